@@ -1,4 +1,5 @@
-// error: what pincer throws when input is wrong. The message is a sentence for a person: place, value, allowed range, remedy.
+// error: what pincer throws when input is wrong. The message is a sentence for a
+// person: place, value, allowed range, remedy.
 #pragma once
 #include <stdexcept>
 #include <string>

@@ -1,17 +1,19 @@
 // pair_query: where two bodies touch, as up to four points.
 //
-//   p_W  halfway between the two surfaces, n_W the unit normal out of shape b towards a, phi the gap there [m] (negative: overlap)
+//   p_W  halfway between the two surfaces, n_W the unit normal out of shape b towards a,
+//        phi the gap there [m] (negative: overlap)
 //
 // | pair | method | where |
 // |---|---|---|
 // | sphere and anything | nearest point; on a mesh, the smooth surface | closed_forms.h, smooth_mesh.h |
 // | solid and half-space or dish | extreme points; of a mesh, the corners of its hull | extreme_points.h |
-// | box, capsule, cylinder, hull with each other | least overlap, then facets laid over each other | separation.h, facet_overlap.h |
+// | box, capsule, cylinder, hull with each other | least overlap, then facets laid over
+// each other | separation.h, facet_overlap.h |
 // | mesh and box, capsule, cylinder, hull | closest features, led to its smooth surface | mesh_pairs.h, smooth_lead.h |
 // | mesh and mesh | closest features of the flat triangles | mesh_mesh.h |
-// Half-spaces, dishes and other meshes feel a mesh as its corners or flat triangles: the bulge of its smooth surface between the corners, about
-// e^2 k / 8 for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm radius with edges of 5 mm sinks up to 0.16 mm deeper
-// than its smooth surface.)
+// Half-spaces, dishes and other meshes feel a mesh as its corners or flat triangles: the bulge of its smooth surface
+// between the corners, about e^2 k / 8 for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm
+// radius with edges of 5 mm sinks up to 0.16 mm deeper than its smooth surface.)
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,7 +28,8 @@ struct PairPoint {
   Vec3 p_W = Vec3::Zero();
   Vec3 n_W = Vec3::UnitZ();
   double phi = 0;
-  std::uint32_t feature = 0;  // which corner, end or rim point of the pair this is: the same from tick to tick, so that solvers warm-start
+  // which corner, end or rim point of the pair this is: the same from tick to tick, so that solvers warm-start
+  std::uint32_t feature = 0;
 };
 
 constexpr int kMaxPairPoints = 8;  // of two convex solids, or of a solid on a support, up to four
@@ -38,16 +41,17 @@ struct PairPoints {
 // Builds now what collideShapes would build at the first touch (a mesh's flat features), so that no tick allocates.
 void preparePair(const Shape& a, const Shape& b);
 
-// The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of many candidates the deepest are kept,
-// then those on which the solid would land first if it rocked (point_choice.h, mesh_pairs.h); of a mesh's points whose gaps differ by less than
-// 1e-6 m the one of the lowest feature counts as the deepest, so that it is the same from tick to tick. Every two shapes are answered for, but two
-// supports (half-space, dish), which are both static, have no point. Convex pairs of one kind of shape, and two meshes, are symmetric in a
-// and b to round-off; all others exactly.
-// `last_n_W`: a normal of the pair's last points, or zero: where the search of two convex solids begins. It spares most of the search where
-// the pair has hardly moved; the answer depends on it by round-off only, whatever it is, but where several ways out of an overlap are equally short.
-// Allocates nothing; `cache` is memory only.
-void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out,
-                   const Vec3& last_n_W = Vec3::Zero());
+// The points of a and b that are closer than `margin` >= 0 [m], written to `out` (sorted by feature). Of many
+// candidates the deepest are kept, then those on which the solid would land first if it rocked (point_choice.h,
+// mesh_pairs.h); of a mesh's points whose gaps differ by less than 1e-6 m the one of the lowest feature counts as
+// the deepest, so that it is the same from tick to tick. Every two shapes are answered for, but two supports
+// (half-space, dish), which are both static, have no point. Convex pairs of one kind of shape, and two meshes, are
+// symmetric in a and b to round-off; all others exactly.
+// `last_n_W`: a normal of the pair's last points, or zero: where the search of two convex solids begins. It spares most
+// of the search where the pair has hardly moved; the answer depends on it by round-off only, whatever it is, but where
+// several ways out of an overlap are equally short. Allocates nothing; `cache` is memory only.
+void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache,
+                   PairPoints& out, const Vec3& last_n_W = Vec3::Zero());
 
 // Radius of the smallest sphere about the shape's own origin that holds it [m]; infinity for HalfSpace and Dish.
 double boundingRadius(const Shape& shape);

@@ -1,9 +1,10 @@
 // polytope: the convex hull of points, with its faces, edges and corners.
 //
-//   { p : n_f . p <= d_f for every face f },   n_f unit normal out of the solid [-], d_f distance of the face's plane from the origin [m]
+//   { p : n_f . p <= d_f for every face f },   n_f unit normal out of the solid [-], d_f
+//                                              distance of the face's plane from the origin [m]
 //
-// Facets that lie in one plane to within kFlat of the solid's size are one face, and corners within that of an edge or face are none: a
-// cube given by points of its surface has six faces and eight corners. Frame: the points'.
+// Facets that lie in one plane to within kFlat of the solid's size are one face, and corners within that of an edge or
+// face are none: a cube given by points of its surface has six faces and eight corners. Frame: the points'.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -31,8 +32,8 @@ class Polytope {
     int left, right;  // faces, seen from outside along from -> to
   };
 
-  // The hull of `points` [m]. `source` names them in messages. Throws InputError: fewer than 4 points, a coordinate that isn't finite, all
-  // points in one plane, more than kMaxVertices corners.
+  // The hull of `points` [m]. `source` names them in messages. Throws InputError: fewer than 4 points, a coordinate
+  // that isn't finite, all points in one plane, more than kMaxVertices corners.
   static std::shared_ptr<const Polytope> hullOf(const std::vector<Vec3>& points, const std::string& source);
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
@@ -59,7 +60,8 @@ class Polytope {
   }
   std::span<const int> around(const std::vector<int>& all, int vertex) const {
     const auto begin = static_cast<std::size_t>(first_at_vertex_[static_cast<std::size_t>(vertex)]);
-    return std::span(all).subspan(begin, static_cast<std::size_t>(first_at_vertex_[static_cast<std::size_t>(vertex) + 1]) - begin);
+    return std::span(all).subspan(
+        begin, static_cast<std::size_t>(first_at_vertex_[static_cast<std::size_t>(vertex) + 1]) - begin);
   }
   void setFaces(const std::vector<std::array<int, 3>>& facets, double flat, const std::string& source);
   void setEdges(const std::string& source);

@@ -32,8 +32,9 @@ struct CylinderWithFlat {
 };
 // All of z <= 0; surface normal +z. Static bodies only.
 struct HalfSpace {};
-// A bowl, the inside of a sphere: its lowest point is B's origin, its centre of curvature (0, 0, radius); solid outside the sphere.
-// Static bodies only. What lies above the rim is a matter of the scene's sizes: the surface continues as the whole sphere.
+// A bowl, the inside of a sphere: its lowest point is B's origin, its centre of curvature (0, 0, radius);
+// solid outside the sphere. Static bodies only. What lies above the rim is a matter of the scene's sizes:
+// the surface continues as the whole sphere.
 struct Dish {
   double radius;  // > 0 [m]
 };

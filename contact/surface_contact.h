@@ -18,7 +18,8 @@ enum class SurfaceVariant : std::uint8_t {
 };
 
 // As scenes and the command line name them, in the order of the enumeration.
-inline constexpr std::array<std::string_view, 4> kSurfaceVariantNames = {"smooth", "facet", "force", "smooth_published"};
+inline constexpr std::array<std::string_view, 4> kSurfaceVariantNames = {"smooth", "facet", "force",
+                                                                         "smooth_published"};
 
 // Working memory of queries, for one thread at a time: patches that they touched. No answer depends on what it holds.
 class PatchCache;
@@ -70,22 +71,26 @@ struct SurfaceLook {
   Vec3 p_BC = Vec3::Zero();  // where the centre was
   double reach = 0;          // further contacts were wanted no further than this from it [m]
   double horizon = 0;        // the centre's way for which what it found is all that may be met [m]; 0: look again
-  double vouched = 0;        // the centre's way for which nothing is met but the contact that is known [m]; 0: ask the list
-  bool is_alone = false;     // nothing may be met but the one contact that was followed (lone_contact.h)
-  // The normals of the contacts that were followed, by slot, zero without one: while they have hardly turned, what faces along them is theirs.
+  double vouched = 0;  // the centre's way for which nothing is met but the contact that is known [m]; 0: ask the list
+  bool is_alone = false;  // nothing may be met but the one contact that was followed (lone_contact.h)
+  // The normals of the contacts that were followed, by slot, zero without one: while they have hardly
+  // turned, what faces along them is theirs.
   std::array<Vec3, kMaxSurfaceContacts> n = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
 };
 
-// Where the last query of one finger on one mesh ended; the next begins there. Closed forms don't use it. A plain value: part of the
-// world's state, copied with snapshots. A default one means "search the whole mesh".
+// Where the last query of one finger on one mesh ended; the next begins there. Closed forms don't use it. A plain
+// value: part of the world's state, copied with snapshots. A default one means "search the whole mesh".
 struct SurfaceTracker {
   std::array<SurfaceSlot, kMaxSurfaceContacts> slots;
-  Vec3 p_BC = Vec3::Zero();       // where the fingertip's centre was, or would have been had it not been pressed under the surface [m]
+  // where the fingertip's centre was, or would have been had it not been pressed under the surface [m]
+  Vec3 p_BC = Vec3::Zero();
   Vec3 p_BC_last = Vec3::Zero();  // where it was
   bool has_centre = false;        // whether it has been outside
   SurfaceLook look;
-  SurfaceLook ahead;            // that takes over where `look` will end, and is worked out meanwhile (near_parts.h); horizon 0: none
-  std::int32_t tried = 0;       // parts of the look's list whose turn to be tried has passed; the next query goes on behind them
+  // that takes over where `look` will end, and is worked out meanwhile (near_parts.h); horizon 0: none
+  SurfaceLook ahead;
+  // parts of the look's list whose turn to be tried has passed; the next query goes on behind them
+  std::int32_t tried = 0;
   double gone = 0;              // the length of the centre's way so far, and of what the reach has grown by [m]
   double full_at = -kInfinity;  // `gone` where a further contact last found no slot [m]
   double reach = 0;             // how far from the centre contacts were followed in the last query [m]
@@ -94,10 +99,13 @@ struct SurfaceTracker {
 
 enum QueryStatus : std::uint32_t {
   kQueryOk = 0,
-  kQueryReseeded = 1u << 0,         // the warm start failed; the answer came from the tree (nothing was lost)
-  kQueryHeldDirection = 1u << 1,    // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there
-  kQueryContactsDropped = 1u << 2,  // more than three places are touched: the shallowest of the new ones were dropped. Fill such hollows
-  kQueryEased = 1u << 3,            // a contact came or went while it overlapped: eased in or out. Widen hollows tighter than the finger
+  kQueryReseeded = 1u << 0,  // the warm start failed; the answer came from the tree (nothing was lost)
+  // no solution found: the last contact was kept. Remedy: refine or smooth the mesh there
+  kQueryHeldDirection = 1u << 1,
+  // more than three places are touched: the shallowest of the new ones were dropped. Fill such hollows
+  kQueryContactsDropped = 1u << 2,
+  // a contact came or went while it overlapped: eased in or out. Widen hollows tighter than the finger
+  kQueryEased = 1u << 3,
 };
 
 }  // namespace pincer::contact

@@ -1,7 +1,8 @@
 // triple_buffer: hands the latest value from one thread to one other; neither ever waits.
 //
-// Three places: the writer fills one, the reader looks at another, the third holds the latest finished one; handing over is one atomic
-// exchange. A value that is overtaken before it was looked at is lost. All memory is taken when the buffer is made.
+// Three places: the writer fills one, the reader looks at another, the third holds the latest finished one;
+// handing over is one atomic exchange. A value that is overtaken before it was looked at is lost. All
+// memory is taken when the buffer is made.
 #pragma once
 #include <array>
 #include <atomic>

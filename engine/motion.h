@@ -19,7 +19,8 @@ struct DrivenPlace {
 struct FreeRotation {
   enum class Kind : unsigned char { kSpherical, kSymmetric, kTriaxial };
   Kind kind = Kind::kSpherical;
-  int k = 2, i = 0, j = 1;  // principal axes, right-handed: k is the symmetry axis, or the one whose removal leaves the two closest moments
+  // principal axes, right-handed: k is the symmetry axis, or the one whose removal leaves the two closest moments
+  int k = 2, i = 0, j = 1;
   Vec3 inverse_moments = Vec3::Ones();       // [1/(kg m^2)]
   Vec3 root_inverse_moments = Vec3::Ones();  // their roots
 

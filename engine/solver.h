@@ -1,7 +1,8 @@
 // solver: the contact solver as a user sees it: the rows of a contact, what may be asked of a solve, and how it went.
 //
-// A contact has rows along t1, t2, n (frame C) [m/s, N s], with torsion one about n, with rolling two more about t1 and t2 (scaled to m/s and N s by
-// the radii of Material). The equations: engine/solve/contact_problem.h and docs/engine.md.
+// A contact has rows along t1, t2, n (frame C) [m/s, N s], with torsion one about n, with rolling two more
+// about t1 and t2 (scaled to m/s and N s by the radii of Material). The equations:
+// engine/solve/contact_problem.h and docs/engine.md.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -12,22 +13,33 @@ constexpr int kNormalRow = 2;
 constexpr int kMaxContactRows = 6;
 constexpr int kTorsionRow = 3, kRollingRow = 4;  // about n; the first of two, about t1 and t2
 
-using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign>;  // of one contact; rows that it doesn't have are 0
+// of one contact; rows that it doesn't have are 0
+using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign>;
 
 struct SolverOptions {
   double tolerance = 1e-10;  // on the residual, see solve/residual.h [-]; range [1e-14, 1e-2]
-  // The dial between time and error: by how much the contact velocities of twelve contacts and more may be off while they move [m/s], 0 .. 1; 0: to the
-  // tolerance. Fewer contacts, and what is about to rest, are always solved to the tolerance.
+  // The dial between time and error: by how much the contact velocities of twelve contacts and more may
+  // be off while they move [m/s], 0 .. 1; 0: to the tolerance. Fewer contacts, and what is about to
+  // rest, are always solved to the tolerance.
   double accuracy = 1e-6;
   // By how much contacts that contradict each other may give way, see SolveResult [m/s].
   double largest_give = 0;
   bool thorough = true;  // of up to sixty contacts: whether the costlier methods are tried after Newton's
-  // Most that the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted in multiplications, not measured, so
-  // that results don't depend on what else the machine does. Where it runs out the best iterate counts, flagged and energy-safe.
+  // Most that the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted in
+  // multiplications, not measured, so that results don't depend on what else the machine does. Where it runs out the
+  // best iterate counts, flagged and energy-safe.
   double budget = 0;
 };
 
-enum class SolveMethod : std::uint8_t { kNoContact, kWarmStart, kNewton, kAlternation, kInteriorPoint, kSweeps, kNotConverged };
+enum class SolveMethod : std::uint8_t {
+  kNoContact,
+  kWarmStart,
+  kNewton,
+  kAlternation,
+  kInteriorPoint,
+  kSweeps,
+  kNotConverged
+};
 
 struct SolveResult {
   SolveMethod method = SolveMethod::kNoContact;
@@ -35,10 +47,12 @@ struct SolveResult {
   double residual = 0;  // of the returned impulses [-]
   double error = 0;     // the same as a velocity [m/s]
   double start = 0;     // residual of the warm start [-]
-  // To the tolerance, or to the accuracy. False: the impulses are the best iterate in the cones, scaled so that they add no energy.
+  // To the tolerance, or to the accuracy. False: the impulses are the best iterate in the
+  // cones, scaled so that they add no energy.
   bool converged = true;
-  double give = 0;      // not 0: contacts that contradict each other gave way, by so much at most [m/s]
-  bool yields = false;  // no answer exists, walls squeeze: the impulses are those of contacts that are a little soft, not converged
+  double give = 0;  // not 0: contacts that contradict each other gave way, by so much at most [m/s]
+  // no answer exists, walls squeeze: the impulses are those of contacts that are a little soft, not converged
+  bool yields = false;
 };
 
 }  // namespace pincer::engine

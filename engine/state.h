@@ -1,5 +1,5 @@
-// state: all of a world that evolves, and nothing else. Copies by value; a snapshot is a copy; restoring one and giving the same inputs
-// gives the same bits.
+// state: all of a world that evolves, and nothing else. Copies by value; a snapshot is a copy; restoring one and
+// giving the same inputs gives the same bits.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -40,16 +40,19 @@ struct ContactMemory {
   bool anchored = false;      // offset_C holds: it sticks, or did a moment ago, or lies in a face that does
   bool sliding = false;
   bool closing = false;  // it closed in the last tick
-  int open_ticks = 0;    // for which it has been open, by so little that it may close again at once; kOpenTicks: no longer
-  int settling = 0;      // for so many ticks a warm start must be exact to round-off (solve/contact_solver.h)
+  // for which it has been open, by so little that it may close again at once; kOpenTicks: no longer
+  int open_ticks = 0;
+  int settling = 0;  // for so many ticks a warm start must be exact to round-off (solve/contact_solver.h)
 };
 
 // For how many ticks a contact that opens by next to nothing keeps its impulse and its offset.
 constexpr int kOpenTicks = 8;
 
 // A drive's work in the last tick.
-enum class DriveMemory : unsigned char { kWithin, kLow, kHigh, kUnsure };  // its limits; at one of them; it may be either
-// Deed of dry friction: held, or braked what moves. kLocks: it held with half of its force to spare, and nothing touched what it holds.
+// its limits; at one of them; it may be either
+enum class DriveMemory : unsigned char { kWithin, kLow, kHigh, kUnsure };
+// Deed of dry friction: held, or braked what moves. kLocks: it held with half of its force to
+// spare, and nothing touched what it holds.
 enum class BrakeMemory : unsigned char { kHolds, kForward, kBackward, kLocks };
 
 struct WorldState {
@@ -60,11 +63,12 @@ struct WorldState {
   std::vector<BodyState> bodies;
   std::vector<Vec3> driven_w_W;  // angular velocities of driven bodies, by BodyModel::motion [rad/s]
   std::vector<PointState> points;
-  std::vector<double> tree_q, tree_v;   // coordinates, and velocities by columns, of all trees (tree.h)
-  std::vector<DriveInput> controls;     // of the last tick, per drive
-  std::vector<DriveMemory> drives;      // per drive
-  std::vector<BrakeMemory> brakes;      // per coordinate of all trees
-  std::vector<ContactMemory> contacts;  // always options.max_contacts of them, so that no tick allocates; the first contact_count count
+  std::vector<double> tree_q, tree_v;  // coordinates, and velocities by columns, of all trees (tree.h)
+  std::vector<DriveInput> controls;    // of the last tick, per drive
+  std::vector<DriveMemory> drives;     // per drive
+  std::vector<BrakeMemory> brakes;     // per coordinate of all trees
+  // always options.max_contacts of them, so that no tick allocates; the first contact_count count
+  std::vector<ContactMemory> contacts;
   int contact_count = 0;
 };
 
@@ -75,25 +79,25 @@ struct BodyStart {
   Vec3 w_W = Vec3::Zero();  // [rad/s]
 };
 
-// State with every body at `starts` (one per body) and every point at rest on its target `points` (one per point). Throws InputError when
-// sizes differ or a value isn't finite.
+// State with every body at `starts` (one per body) and every point at rest on its target `points` (one per point).
+// Throws InputError when sizes differ or a value isn't finite.
 WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& starts, const std::vector<Vec3>& points);
 
-// Between two ticks: room for `contacts`, after a tick whose status was kContactsDropped. What the state remembers stays as it is; the model's other
-// states are to be grown too, and its scratch is to be made anew. `contacts`: not fewer than there is room for, at most kMostContacts; or throws
-// InputError.
+// Between two ticks: room for `contacts`, after a tick whose status was kContactsDropped. What the state remembers
+// stays as it is; the model's other states are to be grown too, and its scratch is to be made anew. `contacts`: not
+// fewer than there is room for, at most kMostContacts; or throws InputError.
 void growContacts(int contacts, WorldModel& model, WorldState& state);
 
-// Of a pivot or slider, numbered as the builder did: of one that no tree has the angle within half a turn of JointTraits::start. setJoint needs one
-// that a tree has, and places the links that it carries, too.
+// Of a pivot or slider, numbered as the builder did: of one that no tree has the angle within half a turn of
+// JointTraits::start. setJoint needs one that a tree has, and places the links that it carries, too.
 double jointPosition(const WorldModel& model, const WorldState& state, int joint);  // q [rad, m]
 double jointVelocity(const WorldModel& model, const WorldState& state, int joint);  // [rad/s, m/s]
 void setJoint(const WorldModel& model, WorldState& state, int joint, double position, double velocity = 0);
 
-Pose bodyPose(const WorldModel& model, const WorldState& state, int body);                        // X_WB
-Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body);             // w_WB [rad/s]
-double kineticEnergy(const WorldModel& model, const WorldState& state);                           // of all bodies [J]
-double potentialEnergy(const WorldModel& model, const WorldState& state);                         // in gravity, zero at W's origin [J]
+Pose bodyPose(const WorldModel& model, const WorldState& state, int body);             // X_WB
+Vec3 bodyAngularVelocity(const WorldModel& model, const WorldState& state, int body);  // w_WB [rad/s]
+double kineticEnergy(const WorldModel& model, const WorldState& state);                // of all bodies [J]
+double potentialEnergy(const WorldModel& model, const WorldState& state);  // in gravity, zero at W's origin [J]
 double potentialEnergy(const WorldModel& model, const WorldState& state, const Vec3& gravity_W);  // in another [J]
 
 // FNV-1a hash over every bit of the state: equal states, equal hashes, on every machine.

@@ -1,10 +1,12 @@
 // tree: joints with limits, springs, drives and dry friction, and the trees of bodies that hang together by them.
 //
-//   l = sum of c_j q_j        F = f + k (target - l) + d (target' - l'),   lower_force <= F <= upper_force        (a drive on one joint or a tendon)
+//   l = sum of c_j q_j        F = f + k (target - l) + d (target' - l'),   lower_force <= F <= upper_force
+//                                                                          (a drive on one joint or a tendon)
 //
-//   q_j  a joint's coordinate: what a has turned about J's z axis [rad], or gone along it [m], past b; 0 where J of a and J of b coincide
-// Positions q and velocities v of all trees lie in WorldState::tree_q and tree_v; links' BodyState follows from them after each tick.
-// Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 4 to 6.
+//   q_j  a joint's coordinate: what a has turned about J's z axis [rad], or gone along it [m],
+//        past b; 0 where J of a and J of b coincide
+// Positions q and velocities v of all trees lie in WorldState::tree_q and tree_v; links' BodyState follows from them
+// after each tick. Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 4 to 6.
 #pragma once
 #include <array>
 #include <limits>
@@ -23,7 +25,8 @@ enum class JointKind : unsigned char {
   kWeld,    // nothing
 };
 
-// Limits of a pivot's or slider's coordinate, and all that acts on it besides its damping. [N m/rad ..] of pivots, [N/m ..] of sliders.
+// Limits of a pivot's or slider's coordinate, and all that acts on it besides its damping. [N
+// m/rad ..] of pivots, [N/m ..] of sliders.
 struct JointTraits {
   double lower = -std::numeric_limits<double>::infinity();  // limits of q [rad, m]: stops
   double upper = std::numeric_limits<double>::infinity();
@@ -31,22 +34,25 @@ struct JointTraits {
   double stiffness = 0;    // of a spring [N m/rad, N/m], >= 0
   double rest = 0;         // where it is slack [rad, m]
   double friction = 0;     // dry: holds up to so much, and brakes with it [N m, N], >= 0
-  double armature = 0;     // inertia that turns with the coordinate alone, of motor and gear [kg m^2, kg], >= 0; of balls about each axis
-  double start = 0;        // of pivots: about where it is at the start, which full turn it is in [rad]
+  // inertia that turns with the coordinate alone, of motor and gear [kg m^2, kg], >= 0; of balls about each axis
+  double armature = 0;
+  double start = 0;  // of pivots: about where it is at the start, which full turn it is in [rad]
 
   bool operator==(const JointTraits&) const = default;
 };
 
 struct JointModel {
   JointKind kind = JointKind::kPivot;
-  int a = 0, b = -1;   // bodies; b = -1: the world. a is dynamic
-  Pose X_AJ, X_BJ;     // J in the two inertial frames (in W for the world); as given to the builder: in the bodies' own frames
+  int a = 0, b = -1;  // bodies; b = -1: the world. a is dynamic
+  // J in the two inertial frames (in W for the world); as given to the builder: in the bodies' own frames
+  Pose X_AJ, X_BJ;
   double damping = 0;  // of the free axis [N m s/rad] or [N s/m], >= 0
   std::string name = {};
   JointTraits traits = {};
 };
 
-// q of `joint` is the polynomial c_0 + c_1 q_l + c_2 q_l^2 + .. of the joint that it follows. Both are pivots or sliders.
+// q of `joint` is the polynomial c_0 + c_1 q_l + c_2 q_l^2 + .. of the joint
+// that it follows. Both are pivots or sliders.
 struct CouplingModel {
   int joint = 0, follows = 0;  // as addJoint numbers them
   std::array<double, 5> polynomial{0, 1, 0, 0, 0};
@@ -92,10 +98,12 @@ struct TreeLink {
   int parent = -1;  // link; -1: the base
   JointKind kind = JointKind::kPivot;
   bool reversed = false;  // the joint's b is the link, its a the parent: pivots and sliders move by -q
-  int first_q = 0;        // in q of the tree: 1 number, a ball 4 (a quaternion w, x, y, z: J of the link in J of the parent), a weld none
-  int first_v = 0;        // of its coordinates: 1, a ball 3 (angular velocity of the link past its parent, in J of the parent), a weld none
-  Pose X_PJ, X_LJ;        // J in the inertial frames of parent (W or the base body's) and link
-  double mass = 0;        // [kg]
+  // in q of the tree: 1 number, a ball 4 (a quaternion w, x, y, z: J of the link in J of the parent), a weld none
+  int first_q = 0;
+  // of its coordinates: 1, a ball 3 (angular velocity of the link past its parent, in J of the parent), a weld none
+  int first_v = 0;
+  Pose X_PJ, X_LJ;              // J in the inertial frames of parent (W or the base body's) and link
+  double mass = 0;              // [kg]
   Vec3 moments = Vec3::Zero();  // principal, in the link's inertial frame [kg m^2]
   int tip = -1;                 // the column on whose path lie all that move it; -1: none do
 };
@@ -148,13 +156,14 @@ struct TreeModel {
   std::vector<TreeDrive> drives;
   std::vector<TreeLoop> loops;  // with any, all columns are one path
   int blocked = 0;              // directions that the loops take wherever they are (engine/tree/loop_basis.h)
-  // The equations' columns: column c depends on those that before[c], before[before[c]] .. name. That of a tree without ties is that of its branches; what
-  // a tendon or a coupling ties across branches is one chain.
+  // The equations' columns: column c depends on those that before[c], before[before[c]] .. name. That of a tree without
+  // ties is that of its branches; what a tendon or a coupling ties across branches is one chain.
   std::vector<int> before;
   std::vector<int> column_coordinate;  // the coordinate that a column is the rate of
   std::vector<int> block_of;           // per column
   std::vector<int> column_in_block;    // its place there
-  // The packed matrix of the equations (engine/tree/sparse_ldl.h): entries of column c from row[c] on, of each column on its path by depth, its own last.
+  // The packed matrix of the equations (engine/tree/sparse_ldl.h): entries of column c from row[c] on, of each
+  // column on its path by depth, its own last.
   std::vector<int> depth, row;
   int entries = 0;
   std::vector<TreeBlock> blocks;

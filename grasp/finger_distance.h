@@ -1,4 +1,5 @@
-// finger_distance: how far each finger is from each body, and where the two are nearest: for planning a grasp, and for pre-positioning.
+// finger_distance: how far each finger is from each body, and where the two are nearest: for
+// planning a grasp, and for pre-positioning.
 #pragma once
 #include <vector>
 
@@ -15,8 +16,9 @@ struct FingerDistance {
   Vec2 place_L = Vec2::Zero();     // on the pad, where it would touch [m]
 };
 
-// Of every finger and every body that it can touch, finger by finger, with the proxies and orientations of `state`. Searches each surface anew and allocates: off
-// the tick. The tick itself reports each finger's nearest body within its reach (FingerReport::gap, nearest).
+// Of every finger and every body that it can touch, finger by finger, with the proxies and orientations of
+// `state`. Searches each surface anew and allocates: off the tick. The tick itself reports each finger's nearest
+// body within its reach (FingerReport::gap, nearest).
 std::vector<FingerDistance> fingerDistances(const GraspModel& model, const GraspState& state);
 
 }  // namespace pincer::grasp

@@ -1,5 +1,5 @@
-// pad_place: where on its pad a finger is touched. Made where somebody asks: two arcs were 4 % of the instructions of a tick, and a scene without a
-// display needs none.
+// pad_place: where on its pad a finger is touched. Made where somebody asks: two arcs were 4 % of the instructions of a
+// tick, and a scene without a display needs none.
 #pragma once
 #include "pincer/contact/math.h"
 #include "pincer/grasp/model.h"
@@ -16,8 +16,8 @@ struct PadTouch {
 
 struct FingerReport;
 
-// Arc length over the skin from the pad's centre (the finger's support point along the pad normal) to the touch, in the direction (distal, radial)
-// in which it lies about the pad normal [m]; zero if nothing is there.
+// Arc length over the skin from the pad's centre (the finger's support point along the pad normal) to the touch, in the
+// direction (distal, radial) in which it lies about the pad normal [m]; zero if nothing is there.
 Vec2 placeOnPad(const FingerModel& finger, const PadTouch& touch);
 // Of the fingertip's point in direction `d_F` from the centre, of any length.
 Vec2 placeOnPad(const FingerModel& finger, const Vec3& d_F);

@@ -1,29 +1,38 @@
 // passivity: fingers never give their users more energy than came in. Observers that watch, a controller that brakes.
 //
-//   E_i <- E_i - f_i . (p_i - p_i')                   came in through finger i while its device held f_i, exactly, for a held force
-//   B   <- min(B + sum_i (b |p_i - p_i'|^2 / h - f_i . (p_i - p_i')), S + R)      balance of all fingers: what may still flow out
-//   O_i =  h f_i* . (v_i + h f_i / 2m) + |h f_i*|^2 / 2m     would flow out in the coming tick, with the wanted force f_i*
-//   f_i =  f_i* - alpha_i v_i,   alpha_i = min(D_i / (h |v_i|^2), alpha_max)        where B < sum_i O_i, of fingers that move
+//   E_i <- E_i - f_i . (p_i - p_i')                   came in through finger i while its device
+//                                                     held f_i, exactly, for a held force
+//   B   <- min(B + sum_i (b |p_i - p_i'|^2 / h - f_i . (p_i - p_i')), S + R)
+//       balance of all fingers: what may still flow out
+//   O_i =  h f_i* . (v_i + h f_i / 2m) + |h f_i*|^2 / 2m     would flow out in the coming
+//                                                            tick, with the wanted force f_i*
+//   f_i =  f_i* - alpha_i v_i,   alpha_i = min(D_i / (h |v_i|^2), alpha_max)
+//                                where B < sum_i O_i, of fingers that move
 //
-//   E_i  energy that came in through finger i [J];  f_i force that its device held since the last tick [N];  p_i, p_i' its place now and then [m]
-//   v_i  (p_i - p_i') / h, unfiltered: a filter's lag would miss what buzzes [m/s];  m, b  the least mass and viscous friction of the arm at
-//        its tip [kg, N s/m]: half a tick's acceleration from the last velocity to the present one and half to the coming one's mean
-//   S    energy stored in the world above the least that it held [J] (stored in springs, motion and height);  R  reserve [J]
-//   D_i  finger i's share of sum O - B [J]: as much as it gave or would give itself. What the damping can't dissipate stays in B: carried over
-// Energy that alpha_max leaves is withheld (`bound`): the forces that would pay out are scaled down, all alike, to what B allows; direction kept.
-// A finger slower than `still_speed` isn't damped: no damping has an effect there, and nothing is divided by its speed.
+//   E_i  energy that came in through finger i [J];  f_i force that its device held since the last tick
+//                                                   [N];  p_i, p_i' its place now and then [m]
+//   v_i  (p_i - p_i') / h, unfiltered: a filter's lag would miss what buzzes [m/s];  m, b  the least mass and
+//        viscous friction of the arm at its tip [kg, N s/m]: half a tick's acceleration from the last velocity to
+//        the present one and half to the coming one's mean
+//   S    energy stored in the world above the least that it held [J] (stored in
+//        springs, motion and height);  R  reserve [J]
+//   D_i  finger i's share of sum O - B [J]: as much as it gave or would give itself. What the damping
+//        can't dissipate stays in B: carried over
+// Energy that alpha_max leaves is withheld (`bound`): the forces that would pay out are scaled down, all alike,
+// to what B allows; direction kept. A finger slower than `still_speed` isn't damped: no damping has an effect
+// there, and nothing is divided by its speed.
 //
-// The arm's own friction is what makes sampled walls passive at all (Colgate & Schenkel); its dissipation is credit, so that a coupling within
-// the bound of hold_bounds.h is left alone.
+// The arm's own friction is what makes sampled walls passive at all (Colgate & Schenkel); its dissipation is credit, so
+// that a coupling within the bound of hold_bounds.h is left alone.
 //
-// Energy may pass from one finger to another through what they hold: only the sum must not become negative (an n-port). With `each`, every
-// finger must be passive alone.
+// Energy may pass from one finger to another through what they hold: only the sum must not become negative (an n-port).
+// With `each`, every finger must be passive alone.
 //
-// Sources: B. Hannaford, J.-H. Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1-10 (observer and controller, n-ports); J.-H. Ryu, C. Preusche,
-// B. Hannaford, G. Hirzinger, IEEE Trans. Control Syst. Technol. 13 (2005) 594-599 (a tick ahead); S. Stramigioli, C. Secchi, A. J. van der
-// Schaft, C. Fantuzzi, IEEE Trans. Robotics 21 (2005) 574-587 (a held force's work is exact). Departures: the balance is no larger than what
-// the world stores, so that energy lost to friction isn't credit to buzz with later; the arm's mass in the look ahead; the bound behind the
-// damping.
+// Sources: B. Hannaford, J.-H. Ryu, IEEE Trans. Robotics Autom. 18 (2002) 1-10 (observer and controller, n-ports);
+// J.-H. Ryu, C. Preusche, B. Hannaford, G. Hirzinger, IEEE Trans. Control Syst. Technol. 13 (2005) 594-599 (a tick
+// ahead); S. Stramigioli, C. Secchi, A. J. van der Schaft, C. Fantuzzi, IEEE Trans. Robotics 21 (2005) 574-587 (a held
+// force's work is exact). Departures: the balance is no larger than what the world stores, so that energy lost to
+// friction isn't credit to buzz with later; the arm's mass in the look ahead; the bound behind the damping.
 #pragma once
 #include <span>
 #include <string>
@@ -69,8 +78,10 @@ struct PassivityState {
   double energy() const;  // sum of E_i [J]
 };
 
-// Once per tick, before control: the devices' places now [m] and the energy that the world stores [J] (energy_ledger.h). `h`: tick [s].
-void observePorts(const PassivityOptions& options, std::span<const Vec3> p_WF, double stored, double h, PassivityState& state);
+// Once per tick, before control: the devices' places now [m] and the energy that the world
+// stores [J] (energy_ledger.h). `h`: tick [s].
+void observePorts(const PassivityOptions& options, std::span<const Vec3> p_WF, double stored, double h,
+                  PassivityState& state);
 
 // Changes the wanted forces on the users [N].
 void controlPorts(const PassivityOptions& options, double h, PassivityState& state, std::span<Vec3> f_W);

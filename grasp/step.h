@@ -28,7 +28,8 @@ struct FingerState {
   double normal_force = 0;       // of the last tick [N]
 };
 
-// Fingers' memory of the shapes near them, each of as many as it has places for: a thousand fingers among a thousand bodies have room.
+// Fingers' memory of the shapes near them, each of as many as it has places for: a thousand
+// fingers among a thousand bodies have room.
 struct FollowedShapes {
   static constexpr int kMost = 8;  // places of a finger; of more shapes that are near the nearest have them
   int per_finger = 0;              // 0 where all fingers are spheres and there is no mesh
@@ -52,25 +53,29 @@ struct Taxel {
 // A finger's report after a tick.
 struct FingerReport {
   bool touching = false;
-  int body = -1;                    // that carries the largest force, -1 if none
-  Vec3 p_WC = Vec3::Zero();         // contact point (force-weighted mean of this finger's contacts) [m]
-  Vec3 n_W = Vec3::UnitZ();         // outward normal of the body there
-  Vec3 f_contact_W = Vec3::Zero();  // sum of the contact forces on the finger; the bodies feel exactly the negative of each [N]
-  Vec3 f_user_W = Vec3::Zero();  // to render on the user's finger: the coupling's reaction (equal to f_contact_W for a massless proxy) [N]
-  double normal_force = 0;       // [N], >= 0
-  double tangential_force = 0;   // [N]
+  int body = -1;             // that carries the largest force, -1 if none
+  Vec3 p_WC = Vec3::Zero();  // contact point (force-weighted mean of this finger's contacts) [m]
+  Vec3 n_W = Vec3::UnitZ();  // outward normal of the body there
+  // sum of the contact forces on the finger; the bodies feel exactly the negative of each [N]
+  Vec3 f_contact_W = Vec3::Zero();
+  // to render on the user's finger: the coupling's reaction (equal to f_contact_W for a massless proxy) [N]
+  Vec3 f_user_W = Vec3::Zero();
+  double normal_force = 0;      // [N], >= 0
+  double tangential_force = 0;  // [N]
   bool sliding = false;
-  double torsion = 0;               // moment of the contacts on the finger, about n_W [N m]
-  double patch_radius = 0;          // of a soft pad [m]
-  PadTouch touch, last_touch;       // where on the pad, now and in the tick before: placeOnPad, placeRateOnPad (pad_place.h)
-  double gap = 0;                   // to the nearest body [m]; larger than `reach`: a lower bound
-  std::span<const Taxel> pressure;  // row by row, valid until the next step; empty unless FingerModel::taxels asks for it (pressure_map.h)
-  double off_grid = 0;              // normal force of `pressure` that belongs beyond its rim, and is on the taxels there [N]
-  PadTouch nearest;                 // where the nearest point would touch the pad, while nothing does
+  double torsion = 0;          // moment of the contacts on the finger, about n_W [N m]
+  double patch_radius = 0;     // of a soft pad [m]
+  PadTouch touch, last_touch;  // where on the pad, now and in the tick before: placeOnPad, placeRateOnPad (pad_place.h)
+  double gap = 0;              // to the nearest body [m]; larger than `reach`: a lower bound
+  // row by row, valid until the next step; empty unless FingerModel::taxels asks for it (pressure_map.h)
+  std::span<const Taxel> pressure;
+  double off_grid = 0;  // normal force of `pressure` that belongs beyond its rim, and is on the taxels there [N]
+  PadTouch nearest;     // where the nearest point would touch the pad, while nothing does
 };
 
 // State with every body at `starts` and every finger's device at `fingers` [m].
-GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers);
+GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts,
+                     const std::vector<Vec3>& fingers);
 
 // Working memory of a step, as engine::WorldScratch. It keeps the last tick's reports.
 struct GraspScratch;

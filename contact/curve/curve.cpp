@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kSharpestBend = 90 * kDegree;  // beyond, the local centre of unequal segments leaves the inner side
 constexpr double kSharpestCorner = 179 * kDegree;
-constexpr double kLeastBend = 1e-12;   // [rad] of a bend, below which O counts as infinitely far: t changes by less than that
+// [rad] of a bend, below which O counts as infinitely far: t changes by less than that
+constexpr double kLeastBend = 1e-12;
 constexpr double kBeyondGates = 1e-3;  // of t: so that a solution on a gate isn't at the end of the bracket
 constexpr int kMaxNewton = 20, kMaxHalvings = 50;
 constexpr double kSolved = 1e-14;  // of t, in the last step
@@ -31,7 +32,8 @@ Curve::Curve(const Polyline& polyline, SurfaceVariant variant) : variant_(varian
   if (variant == SurfaceVariant::smooth_published) {
     throw InputError("curve: the variant smooth_published exists for meshes only. Allowed: smooth, facet, force.");
   }
-  const CorneredPath path = requireSound(polyline, variant == SurfaceVariant::smooth ? kSharpestBend : kSharpestCorner, kSharpestCorner);
+  const CorneredPath path =
+      requireSound(polyline, variant == SurfaceVariant::smooth ? kSharpestBend : kSharpestCorner, kSharpestCorner);
   addSegments(path);
   if (variant == SurfaceVariant::smooth) addBends(path);
   addGates();
@@ -58,8 +60,8 @@ void Curve::addBends(const CorneredPath& path) {
     const Segment &before = segments_[(i + n - 1) % n], &after = segments_[i];
     const double a = 0.5 * before.length, b = 0.5 * after.length;
     if (path.is_sharp[i]) {
-      bends_.push_back(
-          {before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, 0, 0, a, true, after.e, after.n});
+      bends_.push_back({before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, 0, 0,
+                        a, true, after.e, after.n});
       continue;
     }
     const double turn_sine = cross(before.e, after.e), turn_cosine = before.e.dot(after.e);
@@ -67,8 +69,8 @@ void Curve::addBends(const CorneredPath& path) {
     // O lies on both bisectors, at rho from M0: rho sin(beta) = a cos(beta) + b
     const double kappa = std::abs(beta) < kLeastBend ? 0 : turn_sine / (a * turn_cosine + b);
     PINCER_ASSERT(a * turn_cosine + b > 0);  // paths turn by less than a right angle
-    bends_.push_back({before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, beta, kappa,
-                      a + b * turn_cosine, false, after.e, after.n});
+    bends_.push_back({before.start + a * before.e, after.start, after.start + b * after.e, before.e, before.n, beta,
+                      kappa, a + b * turn_cosine, false, after.e, after.n});
   }
 }
 
@@ -82,7 +84,9 @@ void Curve::addGates() {
     gates_.push_back({segments_[i % n].start, segments_[i - 1].e + segments_[i % n].e});
 }
 
-bool Curve::isEnd(std::int32_t cell) const { return !is_closed_ && (cell == 0 || cell == static_cast<std::int32_t>(gates_.size())); }
+bool Curve::isEnd(std::int32_t cell) const {
+  return !is_closed_ && (cell == 0 || cell == static_cast<std::int32_t>(gates_.size()));
+}
 
 std::int32_t Curve::nearestCell(const Vec2& C) const {
   double nearest = std::numeric_limits<double>::infinity();
@@ -105,7 +109,8 @@ std::int32_t Curve::walk(const Vec2& C, std::int32_t cell) const {
     return (C - g.p).dot(g.d);
   };
   std::int32_t steps = 0;
-  for (; steps < gates && (is_closed_ || cell < gates) && ahead(cell) > 0; ++steps) cell = is_closed_ && cell + 1 == gates ? 0 : cell + 1;
+  for (; steps < gates && (is_closed_ || cell < gates) && ahead(cell) > 0; ++steps)
+    cell = is_closed_ && cell + 1 == gates ? 0 : cell + 1;
   if (steps > 0) return cell;
   for (; steps < gates && (is_closed_ || cell > 0); ++steps) {
     const std::int32_t last = cell > 0 ? cell - 1 : gates - 1;
@@ -128,7 +133,8 @@ Curve::Tangent Curve::onBend(const Bend& bend, const Vec2& C, double& t) const {
     const Vec2 A = bend.M0 + t * d0, B = bend.P + t * d1, D = B - A;  // de Casteljau
     const double length2 = D.squaredNorm();
     const Vec2 T = D / std::sqrt(length2), N = rightOf(T), R = C - A - t * D;
-    const double h = R.dot(N), along = R.dot(T), turning = cross(d0, d1) / length2;  // dT/dt = -turning N, dN/dt = turning T
+    // dT/dt = -turning N, dN/dt = turning T
+    const double h = R.dot(N), along = R.dot(T), turning = cross(d0, d1) / length2;
     line = {C - h * N, N, h};
     const Vec2 dF = -turning * (along * N + h * T);
     const double x = (line.F - bend.M0).dot(bend.e), y = (line.F - bend.M0).dot(bend.n);
@@ -150,11 +156,13 @@ Curve::Tangent Curve::onBend(const Bend& bend, const Vec2& C, double& t) const {
   return line;
 }
 
-// One of the two segments, where the finger's centre is over it, in a hollow the nearer; between them the corner itself.
+// One of the two segments, where the finger's centre is over it, in a hollow
+// the nearer; between them the corner itself.
 Curve::Tangent Curve::onCorner(const Bend& bend, const Vec2& C) {
   const Vec2 from = C - bend.P;
   const double h_before = from.dot(bend.n), h_after = from.dot(bend.n_after);
-  const Tangent before{C - h_before * bend.n, bend.n, h_before}, after{C - h_after * bend.n_after, bend.n_after, h_after};
+  const Tangent before{C - h_before * bend.n, bend.n, h_before},
+      after{C - h_after * bend.n_after, bend.n_after, h_after};
   const bool over_before = from.dot(bend.e) <= 0, over_after = from.dot(bend.e_after) >= 0;
   if (over_before && over_after) return h_before < h_after ? before : after;
   if (over_before) return before;

@@ -2,7 +2,8 @@
 //
 //   atan(y/x) = atan c + atan((y - c x) / (x + c y)),   c the multiple of 1/32 nearest to y/x,   0 <= y <= x
 //
-// atan c from a table; the rest is at most 1/64 and has a power series. Ratios under 1/5 go into a longer series themselves.
+// atan c from a table; the rest is at most 1/64 and has a power series. Ratios
+// under 1/5 go into a longer series themselves.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -44,15 +45,19 @@ DoubleDouble arcBelowOne(const DoubleDouble& y, const DoubleDouble& x) {
     const double beyond = (((y.hi - p.hi) - p.lo) + (y.lo - ratio * x.lo)) / x.hi, z = ratio * ratio;
     return sumOfOrdered(ratio, beyond + ratio * (z * polynomial(kSeries, z)));
   }
-  const double c = j.value / kParts, x1 = std::bit_cast<double>(bitsOf(x.hi) & ~std::uint64_t{0xffffffff}), x2 = x.hi - x1;
-  const double over = ((y.hi - c * x1) - c * x2) + (y.lo - c * x.lo);  // c of 5 bits, y within 8 % of c x: the first two are exact
+  const double c = j.value / kParts, x1 = std::bit_cast<double>(bitsOf(x.hi) & ~std::uint64_t{0xffffffff}),
+               x2 = x.hi - x1;
+  // c of 5 bits, y within 8 % of c x: the first two are exact
+  const double over = ((y.hi - c * x1) - c * x2) + (y.lo - c * x.lo);
   const double t = over / (x.hi + c * y.hi), z = t * t;
   const DoubleDouble arc = kArcs[static_cast<std::size_t>(j.whole)];
   return sumOfOrdered(arc.hi, arc.lo + (t + t * (z * polynomial(kShortSeries, z))));
 }
 
 // atan(y/x), 0 <= x, y, not both 0.
-DoubleDouble arc(const DoubleDouble& y, const DoubleDouble& x) { return y.hi <= x.hi ? arcBelowOne(y, x) : kHalfPi - arcBelowOne(x, y); }
+DoubleDouble arc(const DoubleDouble& y, const DoubleDouble& x) {
+  return y.hi <= x.hi ? arcBelowOne(y, x) : kHalfPi - arcBelowOne(x, y);
+}
 
 // sqrt(1 - x^2), |x| <= 1.
 DoubleDouble legOf(double x) {
@@ -67,7 +72,8 @@ DoubleDouble legOf(double x) {
 // atan2(y, x) where one of them is zero or infinite, or so much larger that the angle is that of an axis.
 double alongAxis(double y, double x) {
   const double sizes[] = {magnitude(y), magnitude(x)};
-  if (sizes[0] == sizes[1] && sizes[0] != 0) return withSignOf(isNegative(x) ? 1.5 * kHalfPi.hi : 0.5 * kHalfPi.hi, y);  // both infinite
+  // both infinite
+  if (sizes[0] == sizes[1] && sizes[0] != 0) return withSignOf(isNegative(x) ? 1.5 * kHalfPi.hi : 0.5 * kHalfPi.hi, y);
   if (sizes[0] > sizes[1]) return withSignOf(kHalfPi.hi, y);
   return withSignOf(isNegative(x) ? 2 * kHalfPi.hi : 0, y);
 }

@@ -2,8 +2,8 @@
 //
 //   x = hi + lo,   |lo| <= ulp(hi) / 2
 //
-// Source: T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18 (1971) 224-242.
-// Departure: products and sums are renormalised once, errors are a few 2^-104 relative where no digits cancel.
+// Source: T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18 (1971)
+// 224-242. Departure: products and sums are renormalised once, errors are a few 2^-104 relative where no digits cancel.
 // All of it is constexpr: tables are computed by the compiler, in the arithmetic that runs.
 #pragma once
 #include <bit>
@@ -70,7 +70,8 @@ constexpr double powerOfTwo(int n) { return std::bit_cast<double>(static_cast<st
 // x 2^n, rounded once, for x of ordinary size (2^-100 .. 2^100) or 0 and any n.
 constexpr double scaled(double x, int n) {
   if (n >= -900 && n <= 900) return x * powerOfTwo(n);
-  if (n > 900) return n > 2000 ? x * powerOfTwo(1023) * powerOfTwo(1023) : x * powerOfTwo(n / 2) * powerOfTwo(n - n / 2);
+  if (n > 900)
+    return n > 2000 ? x * powerOfTwo(1023) * powerOfTwo(1023) : x * powerOfTwo(n / 2) * powerOfTwo(n - n / 2);
   return n < -1200 ? x * powerOfTwo(-1000) * powerOfTwo(-1000) : x * powerOfTwo(-200) * powerOfTwo(n + 200);
 }
 
@@ -97,7 +98,8 @@ constexpr Nearest nearest(double x) {
   return {t - kShift, static_cast<int>(static_cast<std::uint32_t>(bitsOf(t)))};
 }
 
-// Numbers that several functions use; tests/unit/contact/functions_constants.cpp compares them with a library of any precision.
+// Numbers that several functions use; tests/unit/contact/functions_constants.cpp
+// compares them with a library of any precision.
 constexpr DoubleDouble kHalfPi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 constexpr DoubleDouble kLn2{0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 

@@ -2,8 +2,9 @@
 //
 //   e^x = 2^(k/64) e^r,   k the whole number nearest to 64 x / ln 2,   |r| <= ln 2 / 128
 //
-// 2^(j/64) from a table, e^r by its power series. Source: P. T. P. Tang, "Table-driven implementation of the exponential function in
-// IEEE floating-point arithmetic", ACM Trans. Math. Softw. 15 (1989) 144-157. Departure: the table has 106 bits.
+// 2^(j/64) from a table, e^r by its power series. Source: P. T. P. Tang, "Table-driven implementation of
+// the exponential function in IEEE floating-point arithmetic", ACM Trans. Math. Softw. 15 (1989)
+// 144-157. Departure: the table has 106 bits.
 #include "pincer/contact/functions/exponential.h"
 
 #include <array>
@@ -15,8 +16,9 @@ namespace {
 
 constexpr int kParts = 64;
 constexpr double kPartsOverLn2 = 0x1.71547652b82fep+6;
-constexpr double kPart = 0x1.62e42fef8p-7, kPartRest = 0x1.1cf79abc9e3b4p-42;  // ln 2 / 64; times k exact: 34 and 17 bits
-constexpr double kOverflows = 710, kVanishes = -746;                           // e^x beyond the largest double, below half the smallest
+// ln 2 / 64; times k exact: 34 and 17 bits
+constexpr double kPart = 0x1.62e42fef8p-7, kPartRest = 0x1.1cf79abc9e3b4p-42;
+constexpr double kOverflows = 710, kVanishes = -746;  // e^x beyond the largest double, below half the smallest
 
 constexpr auto kRoots = [] {
   std::array<DoubleDouble, kParts> roots{};  // 2^(j/64)

@@ -1,4 +1,5 @@
-// invariants: what asserts ask of numbers, vectors, frames and lists (contact/assert.h). For sources: no public header needs it.
+// invariants: what asserts ask of numbers, vectors, frames and lists
+// (contact/assert.h). For sources: no public header needs it.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -9,7 +10,8 @@
 
 namespace pincer {
 
-// |v|^2 of a normalised vector misses 1 by some 4e-16, and by as much again per rotation; chains of a thousand rotations lie within this.
+// |v|^2 of a normalised vector misses 1 by some 4e-16, and by as much again per rotation; chains
+// of a thousand rotations lie within this.
 constexpr double kUnitRoundOff = 1e-12;
 
 inline bool isUnit(const Vec3& v) { return std::abs(v.squaredNorm() - 1) <= kUnitRoundOff; }
@@ -26,7 +28,9 @@ inline bool isRotation(const Mat3& R) {
 }
 inline bool isRotationIfFinite(const Mat3& R) { return isRotation(R) || !R.allFinite(); }
 // True if A differs from its transpose by round-off only.
-inline bool isSymmetric(const Mat3& A) { return (A - A.transpose()).cwiseAbs().maxCoeff() <= kUnitRoundOff * A.cwiseAbs().maxCoeff(); }
+inline bool isSymmetric(const Mat3& A) {
+  return (A - A.transpose()).cwiseAbs().maxCoeff() <= kUnitRoundOff * A.cwiseAbs().maxCoeff();
+}
 
 inline bool isFiniteAndPositive(double x) { return x > 0 && x < kInfinity; }
 inline bool isFiniteAndNotNegative(double x) { return x >= 0 && x < kInfinity; }

@@ -3,8 +3,8 @@
 //   log(2^k m) = k ln 2 - log c + log(1 + r),   c about 1/m, from a table,   r = c m - 1 exact,   |r| < 2^-7
 //
 // m in (0.7, 1.42), so that k = 0 about 1, and c = 1 there: log x has small relative error where it vanishes.
-// Source: P. T. P. Tang, "Table-driven implementation of the logarithm function in IEEE floating-point arithmetic", ACM Trans. Math.
-// Softw. 16 (1990) 378-400. Departure: c has 11 bits, so that r needs no rounding.
+// Source: P. T. P. Tang, "Table-driven implementation of the logarithm function in IEEE floating-point arithmetic", ACM
+// Trans. Math. Softw. 16 (1990) 378-400. Departure: c has 11 bits, so that r needs no rounding.
 #include <array>
 #include <limits>
 
@@ -18,7 +18,8 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-constexpr DoubleDouble kOverLn2{0x1.71547652b82fep+0, 0x1.777d0ffda0d24p-56}, kOverLn10{0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
+constexpr DoubleDouble kOverLn2{0x1.71547652b82fep+0, 0x1.777d0ffda0d24p-56},
+    kOverLn10{0x1.bcb7b1526e50ep-2, 0x1.95355baaafad3p-57};
 
 // Multiples of 2^-42, so that sums of them with k ln 2 are exact.
 constexpr double kLn2Coarse = 0x1.62e42fefa38p-1, kLn2Rest = 0x1.ef35793c7673p-45;

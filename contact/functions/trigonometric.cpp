@@ -2,9 +2,9 @@
 //
 //   x = k pi/2 + r + r',  |r| <= pi/4;   sin r and cos r by their power series, and by k which of them with which sign
 //
-// Small arguments lose k pi/2 in parts of 33 bits, whose products with k are exact (W. J. Cody, W. Waite, "Software manual for the
-// elementary functions", 1980); large ones are multiplied by just those digits of 2/pi that matter (M. Payne, R. Hanek, "Radian
-// reduction for trigonometric functions", SIGNUM Newsletter 18, 1983).
+// Small arguments lose k pi/2 in parts of 33 bits, whose products with k are exact (W. J. Cody, W. Waite, "Software
+// manual for the elementary functions", 1980); large ones are multiplied by just those digits of 2/pi that matter (M.
+// Payne, R. Hanek, "Radian reduction for trigonometric functions", SIGNUM Newsletter 18, 1983).
 #include <limits>
 
 #include "pincer/contact/elementary.h"
@@ -65,13 +65,16 @@ std::uint64_t digits(int at) {
   return shift == 0 ? kDigits[word] : kDigits[word] << shift | kDigits[word + 1] >> (64 - shift);
 }
 
-// x = m 2^e with m of 53 bits: digits of 2/pi before e - 1 give multiples of 4, which no function sees; after 192 more follows 2^-137.
+// x = m 2^e with m of 53 bits: digits of 2/pi before e - 1 give multiples of 4, which no
+// function sees; after 192 more follows 2^-137.
 Reduced byDigits(double x) {
   const Significand s = significandOf(x);
   const auto m = static_cast<std::uint64_t>(s.m * 0x1p52);
   const int first = s.exponent - 52 - 2 + 64;
-  const Uint128 low = static_cast<Uint128>(m) * digits(first + 128), middle = static_cast<Uint128>(m) * digits(first + 64) + (low >> 64);
-  const Uint128 turns = (static_cast<Uint128>(m * digits(first)) << 64) + middle;  // in quarter turns, times 2^126, modulo 4
+  const Uint128 low = static_cast<Uint128>(m) * digits(first + 128),
+                middle = static_cast<Uint128>(m) * digits(first + 64) + (low >> 64);
+  // in quarter turns, times 2^126, modulo 4
+  const Uint128 turns = (static_cast<Uint128>(m * digits(first)) << 64) + middle;
   const int k = static_cast<int>((turns + (static_cast<Uint128>(1) << 125)) >> 126);
   const auto rest = static_cast<Int128>(turns - (static_cast<Uint128>(static_cast<unsigned>(k)) << 126));
   const auto hi = static_cast<double>(rest);

@@ -41,7 +41,8 @@ void makeDirectory(const std::string& directory) {
   std::filesystem::create_directories(directory, error);
   if (!error && std::filesystem::is_directory(directory, error)) return;
   const std::string cause = error ? error.message() : "a file of that name is in the way";
-  throw InputError(fmt::format("{}: can't make the directory: {}. Choose a directory that you may write.", directory, cause));
+  throw InputError(
+      fmt::format("{}: can't make the directory: {}. Choose a directory that you may write.", directory, cause));
 }
 
 }  // namespace pincer

@@ -1,4 +1,5 @@
-// atomic_file: a text or binary file that appears whole or not at all: written beside its place (part_file.h), flushed to the disk, renamed.
+// atomic_file: a text or binary file that appears whole or not at all: written beside its place
+// (part_file.h), flushed to the disk, renamed.
 //
 // Errors: InputError with path, cause and remedy; the partial file is removed, as it is when an exception passes by.
 #pragma once

@@ -6,7 +6,8 @@
 
 namespace pincer {
 
-// `thing` in the singular; its plural ends with s, that of a word on -x with -ices ("vertex"), that of one on -ch with -es ("patch").
+// `thing` in the singular; its plural ends with s, that of a word on -x with -ices
+// ("vertex"), that of one on -ch with -es ("patch").
 std::string counted(std::int64_t n, std::string_view thing);
 
 }  // namespace pincer

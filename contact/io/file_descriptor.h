@@ -1,8 +1,9 @@
 // file_descriptor: an open file of the system, closed with its owner, and the lock that dies with the process.
 //
-// The lock is an "open file description" lock (fcntl(2), F_OFD_SETLK): it belongs to this opening of the file and not to the process. So a
-// second opening in the same process meets it as another program would, and closing some other descriptor of the file leaves it in place
-// (POSIX record locks, SQLite's among them, are lost that way). Whatever ends the process frees it, kill -9 too.
+// The lock is an "open file description" lock (fcntl(2), F_OFD_SETLK): it belongs to this opening of the file and
+// not to the process. So a second opening in the same process meets it as another program would, and closing some
+// other descriptor of the file leaves it in place (POSIX record locks, SQLite's among them, are lost that way).
+// Whatever ends the process frees it, kill -9 too.
 #pragma once
 #include <utility>
 

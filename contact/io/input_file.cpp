@@ -33,7 +33,8 @@ std::string_view kindOf(mode_t mode) {
 void refuseUnlessRegular(const std::string& path, const struct stat& status, std::string_view kind_name) {
   if (S_ISREG(status.st_mode)) return;
   const std::string_view remedy = S_ISFIFO(status.st_mode) ? "Save its content to a file first." : "Check the path.";
-  throw InputError(fmt::format("{}: this is {}, not a file; {} is needed here. {}", path, kindOf(status.st_mode), kind_name, remedy));
+  throw InputError(fmt::format("{}: this is {}, not a file; {} is needed here. {}", path, kindOf(status.st_mode),
+                               kind_name, remedy));
 }
 
 struct stat statusOf(const std::string& path) {
@@ -44,18 +45,22 @@ struct stat statusOf(const std::string& path) {
 
 }  // namespace
 
-void requireRegularFile(const std::string& path, std::string_view kind_name) { refuseUnlessRegular(path, statusOf(path), kind_name); }
+void requireRegularFile(const std::string& path, std::string_view kind_name) {
+  refuseUnlessRegular(path, statusOf(path), kind_name);
+}
 
 void refuseNul(std::string_view text, const std::string& name, std::int64_t first_line) {
   const std::size_t place = text.find('\0');
   if (place == std::string_view::npos) return;
   const auto line = first_line + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n');
   throw InputError(
-      fmt::format("{}:{}: a NUL byte (byte {} of the text) is no part of a text. The file is damaged or of another kind; make it anew.",
+      fmt::format("{}:{}: a NUL byte (byte {} of the text) is no part of a text. The file is damaged or of another "
+                  "kind; make it anew.",
                   name, line, place));
 }
 
-// Looks before it opens, for opening alone may do something to a device; and looks again, for the file may have been exchanged.
+// Looks before it opens, for opening alone may do something to a device; and looks
+// again, for the file may have been exchanged.
 InputFile::InputFile(const std::string& path, const InputKind& kind) : path_(path), kind_(kind) {
   requireRegularFile(path, kind.name);
   file_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
@@ -67,8 +72,8 @@ InputFile::InputFile(const std::string& path, const InputKind& kind) : path_(pat
     refuseUnlessRegular(path, status, kind.name);
     size_ = static_cast<std::size_t>(std::max<off_t>(status.st_size, 0));
     if (size_ > kind_.most_bytes) {
-      refuse(fmt::format("the file has {:.1f} MB; {} has at most {:g} MB. {}", static_cast<double>(size_) / kMegabyte, kind_.name,
-                         static_cast<double>(kind_.most_bytes) / kMegabyte, kind_.remedy));
+      refuse(fmt::format("the file has {:.1f} MB; {} has at most {:g} MB. {}", static_cast<double>(size_) / kMegabyte,
+                         kind_.name, static_cast<double>(kind_.most_bytes) / kMegabyte, kind_.remedy));
     }
   } catch (...) {
     ::close(file_);
@@ -90,11 +95,12 @@ bool InputFile::fill() {
   const int error = errno;
   buffer_.resize(begin + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
   if (got < 0)
-    refuse(fmt::format("reading failed after {} bytes: {}. Check the disk and copy the file again.", read_, std::strerror(error)));
+    refuse(fmt::format("reading failed after {} bytes: {}. Check the disk and copy the file again.", read_,
+                       std::strerror(error)));
   read_ += static_cast<std::size_t>(got);
   if (read_ > kind_.most_bytes) {
-    refuse(fmt::format("the file is larger than {:g} MB, the most that {} has. {}", static_cast<double>(kind_.most_bytes) / kMegabyte,
-                       kind_.name, kind_.remedy));
+    refuse(fmt::format("the file is larger than {:g} MB, the most that {} has. {}",
+                       static_cast<double>(kind_.most_bytes) / kMegabyte, kind_.name, kind_.remedy));
   }
   return got > 0;
 }
@@ -122,8 +128,8 @@ bool InputFile::nextLine(std::string_view& line) {
   ++line_;
   line = std::string_view(buffer_).substr(position_, std::min(end, buffer_.size()) - position_);
   if (line.size() > kLongestTableLine) {
-    throw InputError(
-        fmt::format("{}:{}: the line is longer than {} bytes. Is this {}? Make it anew.", path_, line_, kLongestTableLine, kind_.name));
+    throw InputError(fmt::format("{}:{}: the line is longer than {} bytes. Is this {}? Make it anew.", path_, line_,
+                                 kLongestTableLine, kind_.name));
   }
   position_ = std::min(end, buffer_.size() - 1) + 1;
   if (kind_.is_text) refuseNul(line, path_, line_);

@@ -1,9 +1,10 @@
-// input_file: how the program reads every file that it is given: a regular file of a size that its kind allows, and nothing else.
+// input_file: how the program reads every file that it is given: a regular file of a
+// size that its kind allows, and nothing else.
 //
-// A directory, pipe, socket or device is refused by name and never waited for (so /dev/stdin is taken only where a file is redirected to it: a
-// pipe has no size that could be checked, and what went wrong in it could not be named by its lines). The size is counted while
-// reading, because a file may grow and a file of the kernel says that it has none. A NUL byte in a text is refused with its line: parsers
-// take it for the text's end.
+// A directory, pipe, socket or device is refused by name and never waited for (so /dev/stdin is taken only where a file
+// is redirected to it: a pipe has no size that could be checked, and what went wrong in it could not be named by its
+// lines). The size is counted while reading, because a file may grow and a file of the kernel says that it has none. A
+// NUL byte in a text is refused with its line: parsers take it for the text's end.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +25,8 @@ struct InputKind {
 
 constexpr std::size_t kMegabyte = std::size_t{1} << 20;
 
-// The longest line of a table [bytes]: 500 columns of 130 characters; without a bound a file without line ends would be one.
+// The longest line of a table [bytes]: 500 columns of 130 characters; without a
+// bound a file without line ends would be one.
 constexpr std::size_t kLongestTableLine = std::size_t{1} << 16;
 
 // A file that was checked and is open for reading.
@@ -39,8 +41,8 @@ class InputFile {
   // All that is left. Throws InputError: too large, unreadable, a NUL byte in a text.
   std::string readAll();
 
-  // The next line without its end (LF or CRLF), valid until the next call; false at the end of the file. Throws as above, and for a line
-  // longer than kLongestTableLine.
+  // The next line without its end (LF or CRLF), valid until the next call; false at the end of the file. Throws as
+  // above, and for a line longer than kLongestTableLine.
   bool nextLine(std::string_view& line);
   std::int64_t line() const { return line_; }  // of the last one, from 1
 

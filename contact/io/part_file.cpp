@@ -18,7 +18,8 @@ namespace pincer {
 namespace {
 
 constexpr std::size_t kDigits = 16;
-constexpr std::size_t kLongestName = 200;  // of the file's own name that the part's repeats: names may have 255 bytes in all
+// of the file's own name that the part's repeats: names may have 255 bytes in all
+constexpr std::size_t kLongestName = 200;
 constexpr std::string_view kEnding = ".part";
 
 std::string directoryOf(const std::string& path) {
@@ -38,8 +39,11 @@ std::string randomName(const std::string& path) {
 }
 
 bool isPartOf(const std::string& beginning, const std::string& name) {
-  if (name.size() != beginning.size() + kDigits + kEnding.size() || !name.starts_with(beginning) || !name.ends_with(kEnding)) return false;
-  return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(beginning.size()), name.end() - static_cast<std::ptrdiff_t>(kEnding.size()),
+  if (name.size() != beginning.size() + kDigits + kEnding.size() || !name.starts_with(beginning) ||
+      !name.ends_with(kEnding))
+    return false;
+  return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(beginning.size()),
+                     name.end() - static_cast<std::ptrdiff_t>(kEnding.size()),
                      [](char c) { return std::isxdigit(static_cast<unsigned char>(c)); });
 }
 

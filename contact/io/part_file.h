@@ -1,8 +1,10 @@
-// part_file: the file under a temporary name, beside the place where it is to appear: `.<name>.<16 hexadecimal digits>.part`.
+// part_file: the file under a temporary name, beside the place where it is to
+// appear: `.<name>.<16 hexadecimal digits>.part`.
 //
-// The name is drawn at random and made with O_EXCL | O_NOFOLLOW: nothing that was planted there is followed or overwritten, and two programs
-// that write the same file don't share one part. The mode is the umask's. What a killed program left of the same file is removed on the way:
-// a part is locked while its program lives, so that one without a lock is nobody's.
+// The name is drawn at random and made with O_EXCL | O_NOFOLLOW: nothing that was planted there is followed
+// or overwritten, and two programs that write the same file don't share one part. The mode is the umask's.
+// What a killed program left of the same file is removed on the way: a part is locked while its program
+// lives, so that one without a lock is nobody's.
 //
 // Errors: InputError with path, cause and remedy; the part is removed.
 #pragma once
@@ -20,7 +22,8 @@ class PartFile {
 
   const std::string& name() const { return part_; }
   int descriptor() const { return file_.get(); }
-  // Gives up descriptor and lock, for a library that opens the file by its name (SQLite loses its own locks when any descriptor is closed).
+  // Gives up descriptor and lock, for a library that opens the file by its name (SQLite loses its
+  // own locks when any descriptor is closed).
   void release() { file_ = FileDescriptor(); }
 
   void replace();   // puts it in place, whatever stood there; a link is replaced, not followed

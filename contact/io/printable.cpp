@@ -14,7 +14,8 @@ struct Character {
   bool valid = false;
 };
 
-// Source: The Unicode Standard, table 3-7 (well-formed UTF-8): no overlong forms, no surrogates, nothing beyond U+10FFFF.
+// Source: The Unicode Standard, table 3-7 (well-formed UTF-8): no overlong
+// forms, no surrogates, nothing beyond U+10FFFF.
 Character firstOf(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
   const unsigned first = byte(0);
@@ -35,13 +36,16 @@ bool turnsDirection(char32_t c) {
   return c == 0x61C || c == 0x200E || c == 0x200F || (c >= 0x202A && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
 }
 
-bool isObeyed(char32_t c) { return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x2028 || c == 0x2029 || turnsDirection(c); }
+bool isObeyed(char32_t c) {
+  return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x2028 || c == 0x2029 || turnsDirection(c);
+}
 
 std::string shown(char32_t code) {
   if (code == '\n') return "\\n";
   if (code == '\t') return "\\t";
   if (code == '\r') return "\\r";
-  return code < 0x100 ? fmt::format("\\x{:02x}", static_cast<unsigned>(code)) : fmt::format("\\u{:04x}", static_cast<unsigned>(code));
+  return code < 0x100 ? fmt::format("\\x{:02x}", static_cast<unsigned>(code))
+                      : fmt::format("\\u{:04x}", static_cast<unsigned>(code));
 }
 
 // Each character of a text as it is shown.

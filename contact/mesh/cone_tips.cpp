@@ -4,8 +4,8 @@
 
 namespace pincer::contact {
 
-std::optional<ConeTip> findConeTip(const TriangleMesh& mesh, const CornerNormals& corners, const std::vector<std::int32_t>& corners_at,
-                                   double least_lean) {
+std::optional<ConeTip> findConeTip(const TriangleMesh& mesh, const CornerNormals& corners,
+                                   const std::vector<std::int32_t>& corners_at, double least_lean) {
   constexpr double kStraight = 0.02;  // n . g of a ruling's far end
   constexpr double kRound = 1e-3;     // how evenly the rulings lie about the axis
   if (corners_at.empty()) return {};
@@ -14,7 +14,9 @@ std::optional<ConeTip> findConeTip(const TriangleMesh& mesh, const CornerNormals
   Vec3 sum = Vec3::Zero();
   for (const std::int32_t c : corners_at) {
     const auto t = static_cast<std::size_t>(c / 3), i = static_cast<std::size_t>(c % 3), j = (i + 1) % 3;
-    const auto at = [&](std::size_t k) -> const Vec3& { return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])]; };
+    const auto at = [&](std::size_t k) -> const Vec3& {
+      return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
+    };
     const Vec3 g = (at(j) - at(i)).normalized();
     if (std::abs(corners.normals[t][j].dot(g)) > kStraight) return {};
     rulings.push_back(g);
@@ -28,7 +30,8 @@ std::optional<ConeTip> findConeTip(const TriangleMesh& mesh, const CornerNormals
   }
   const double cos = 1 / y.norm();
   if (!(cos > math::sin(least_lean) && cos < 1)) return {};
-  const Vec3& n = corners.normals[static_cast<std::size_t>(corners_at[0] / 3)][static_cast<std::size_t>(corners_at[0] % 3)];
+  const Vec3& n =
+      corners.normals[static_cast<std::size_t>(corners_at[0] / 3)][static_cast<std::size_t>(corners_at[0] % 3)];
   return ConeTip{y.normalized(), std::sqrt(1 - cos * cos), cos, n.dot(y) > 0 ? 1.0 : -1.0};
 }
 

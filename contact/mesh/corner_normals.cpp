@@ -44,7 +44,9 @@ class CornerNormalFinder {
   }
 
  private:
-  const Vec3& corner(std::size_t t, std::size_t i) const { return mesh_.vertices[static_cast<std::size_t>(mesh_.triangles[t][i % 3])]; }
+  const Vec3& corner(std::size_t t, std::size_t i) const {
+    return mesh_.vertices[static_cast<std::size_t>(mesh_.triangles[t][i % 3])];
+  }
 
   const Vec3* fileNormal(std::size_t t, std::size_t i) const {
     return use_file_normals_ ? usableFileNormal(mesh_, t, i, opposing_) : nullptr;
@@ -64,12 +66,14 @@ class CornerNormalFinder {
     return mesh_.smoothing_groups[t] != 0 && mesh_.smoothing_groups[t] == mesh_.smoothing_groups[s];
   }
 
-  // How a fan ends: not at all (or at one edge, seen from both sides), along a crease that goes straight on, or where creases meet.
+  // How a fan ends: not at all (or at one edge, seen from both sides), along a crease that
+  // goes straight on, or where creases meet.
   enum class FanEnd { none, straight, corner };
 
   struct Fan {
-    Vec3 out = Vec3::Zero(), in = Vec3::Zero();               // unit directions to the other ends of its first and last edge, if sharp
-    double crease = std::numeric_limits<double>::infinity();  // length of the shorter of the two [m]
+    // unit directions to the other ends of its first and last edge, if sharp
+    Vec3 out = Vec3::Zero(), in = Vec3::Zero();
+    double crease = std::numeric_limits<double>::infinity();                 // length of the shorter of the two [m]
     double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // of its edges at the vertex [m]
 
     // The exponent p of the edges' lengths in the weights.
@@ -89,7 +93,9 @@ class CornerNormalFinder {
     std::vector<Fan> fan;
   };
 
-  Vec3 direction(std::size_t t, std::size_t from, std::size_t to) const { return (corner(t, to) - corner(t, from)).normalized(); }
+  Vec3 direction(std::size_t t, std::size_t from, std::size_t to) const {
+    return (corner(t, to) - corner(t, from)).normalized();
+  }
 
   Fans findFans(const std::vector<std::array<bool, 3>>& sharp) const {
     UnionFind sets(3 * sharp.size());
@@ -128,14 +134,16 @@ class CornerNormalFinder {
 
   // True if the triangle goes on in one plane, and in one fan, across its edge.
   bool isFlatAcross(std::size_t t, std::size_t edge, const Sharp& sharp) const {
-    constexpr double kFlat = 2e-3;  // [rad]: what rounding in a file makes of a plane; beyond, triangles are facets of their own
+    // [rad]: what rounding in a file makes of a plane; beyond, triangles are facets of their own
+    constexpr double kFlat = 2e-3;
     const std::int32_t other = neighbours_[t][edge].triangle;
     if (other < 0 || sharp[t][edge]) return false;
     return facet_normals_[t].cross(facet_normals_[static_cast<std::size_t>(other)]).squaredNorm() < kFlat * kFlat;
   }
 
-  // The weighted normals of the fans' facets, one per corner c = 3 t + i. What lies in one plane is one facet, of the outer two of its edges:
-  // else a quad would weigh as one triangle or as two, as its diagonal happens to run, and normals lean to one side of a cylinder's rim.
+  // The weighted normals of the fans' facets, one per corner c = 3 t + i. What lies in one plane is one facet, of the
+  // outer two of its edges: else a quad would weigh as one triangle or as two, as its diagonal happens to run, and
+  // normals lean to one side of a cylinder's rim.
   std::vector<Vec3> facetsOf(const Fans& fans, const Sharp& sharp) const {
     std::vector<Vec3> weighted(fans.of_corner.size(), Vec3::Zero());
     std::vector<bool> done(fans.of_corner.size());
@@ -144,12 +152,15 @@ class CornerNormalFinder {
       weighted[c] = planeFrom(c, fans, sharp, done);
     }
     for (std::size_t c = 0; c < weighted.size(); ++c) {
-      if (!done[c]) weighted[c] = weightedNormal(side(c / 3, c % 3, c % 3 + 1), side(c / 3, c % 3, c % 3 + 2), fans.fan[fans.of_corner[c]]);
+      if (!done[c])
+        weighted[c] =
+            weightedNormal(side(c / 3, c % 3, c % 3 + 1), side(c / 3, c % 3, c % 3 + 2), fans.fan[fans.of_corner[c]]);
     }
     return weighted;
   }
 
-  // Of the plane that begins, counter-clockwise around the vertex, at corner c; zero, with nothing done, if it takes half the way around.
+  // Of the plane that begins, counter-clockwise around the vertex, at corner c; zero, with
+  // nothing done, if it takes half the way around.
   Vec3 planeFrom(std::size_t c, const Fans& fans, const Sharp& sharp, std::vector<bool>& done) const {
     constexpr double kHalfWay = -0.9;  // cosine
     const Vec3 e = side(c / 3, c % 3, c % 3 + 1);
@@ -192,8 +203,9 @@ class CornerNormalFinder {
 
   static Vec3 mirrored(const Vec3& n, const Vec3& along) { return n - 2 * n.dot(along) * along; }
 
-  // Fans that end straight take the normal of whole neighbours that lie most squarely across the crease: the least along it. (By angles, the
-  // far end of a long quad's diagonal would be as square as its side's, and what is mirrored across that doesn't turn with the surface.)
+  // Fans that end straight take the normal of whole neighbours that lie most squarely across the crease: the least
+  // along it. (By angles, the far end of a long quad's diagonal would be as square as its side's, and what is mirrored
+  // across that doesn't turn with the surface.)
   void continueToCreases(const Fans& fans, Normals& normals) const {
     constexpr double kAsSquare = 0.1;  // of the crease's edges there
     std::vector<double> least_along(fans.fan.size(), std::numeric_limits<double>::infinity());
@@ -225,7 +237,8 @@ class CornerNormalFinder {
       for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) {
         const Vec3 g = direction(t, i, j);
         const bool on_crease = g == fan.out || g == fan.in;
-        if (on_crease && fans.fan[fans.of_corner[3 * t + j]].end() != FanEnd::corner) sum[fans.of_corner[c]] += mirrored(normals[t][j], g);
+        if (on_crease && fans.fan[fans.of_corner[3 * t + j]].end() != FanEnd::corner)
+          sum[fans.of_corner[c]] += mirrored(normals[t][j], g);
       }
     }
     adopt(sum, fans, normals);
@@ -234,7 +247,8 @@ class CornerNormalFinder {
   void adopt(const std::vector<Vec3>& sum, const Fans& fans, Normals& normals) const {
     for (std::size_t c = 0; c < fans.of_corner.size(); ++c) {
       const Vec3& n = sum[fans.of_corner[c]];
-      if (n.norm() > kCancelled && angleBetween(n, normals[c / 3][c % 3]) < kFarthestMirror) normals[c / 3][c % 3] = n.normalized();
+      if (n.norm() > kCancelled && angleBetween(n, normals[c / 3][c % 3]) < kFarthestMirror)
+        normals[c / 3][c % 3] = n.normalized();
     }
   }
 
@@ -261,7 +275,8 @@ class CornerNormalFinder {
 
 }  // namespace
 
-CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle, bool use_file_normals) {
+CornerNormals findCornerNormals(const TriangleMesh& mesh, const Neighbours& neighbours, double crease_angle,
+                                bool use_file_normals) {
   PINCER_ASSERT(neighbours.size() == mesh.triangles.size());
   PINCER_ASSERT(0 < crease_angle && crease_angle <= M_PI);
   return CornerNormalFinder(mesh, neighbours, use_file_normals).find(crease_angle);

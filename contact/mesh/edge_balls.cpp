@@ -38,8 +38,12 @@ class EdgeBallFinder {
   }
 
  private:
-  const Vec3& corner(std::size_t t, std::size_t i) const { return mesh_.vertices[static_cast<std::size_t>(mesh_.triangles[t][i % 3])]; }
-  const Vec3& normal(Fan fan) const { return corners_.normals[static_cast<std::size_t>(fan) / 3][static_cast<std::size_t>(fan) % 3]; }
+  const Vec3& corner(std::size_t t, std::size_t i) const {
+    return mesh_.vertices[static_cast<std::size_t>(mesh_.triangles[t][i % 3])];
+  }
+  const Vec3& normal(Fan fan) const {
+    return corners_.normals[static_cast<std::size_t>(fan) / 3][static_cast<std::size_t>(fan) % 3];
+  }
 
   void findFans() {
     UnionFind sets(3 * mesh_.triangles.size());
@@ -51,7 +55,8 @@ class EdgeBallFinder {
         sets.join(static_cast<std::int32_t>(3 * t + (i + 1) % 3), 3 * other + edge);
       }
     }
-    for (std::size_t c = 0; c < 3 * mesh_.triangles.size(); ++c) balls_.fan_of.push_back(sets.find(static_cast<std::int32_t>(c)));
+    for (std::size_t c = 0; c < 3 * mesh_.triangles.size(); ++c)
+      balls_.fan_of.push_back(sets.find(static_cast<std::int32_t>(c)));
   }
 
   void addCrease(std::size_t t, std::size_t i) {
@@ -74,7 +79,8 @@ class EdgeBallFinder {
     ball.vanishes = n == 1 || (n == 2 && a.dot(b) > 0 && a.cross(b).norm() < kSameFace);
     if (ball.vanishes) return;
     const auto same_turn = [&](const CreaseEnd& crease) { return crease.convex == ball.creases[0].convex; };
-    if (!std::all_of(ball.creases.begin(), ball.creases.end(), same_turn)) refuse(vertex, "convex and concave edges meet");
+    if (!std::all_of(ball.creases.begin(), ball.creases.end(), same_turn))
+      refuse(vertex, "convex and concave edges meet");
     ball.s = ball.creases[0].convex ? 1 : -1;
     if (n == 2 && 1 + a.dot(b) < kFlattest) refuse(vertex, "the two faces lie back to back");
     ball.x = n == 2 ? (a + b) / (1 + a.dot(b)) : centreOfCorner(vertex, ball);
@@ -100,10 +106,11 @@ class EdgeBallFinder {
   }
 
   [[noreturn]] void refuse(std::int32_t vertex, const std::string& why) const {
-    throw InputError(fmt::format(
-        "{}: at {} {}: such a corner can't be rounded. Round it in a mesh editor, or let the crease angle leave one of its edges smooth "
-        "(--crease-angle).",
-        mesh_.source, vertexPlace(mesh_, vertex), why));
+    throw InputError(
+        fmt::format("{}: at {} {}: such a corner can't be rounded. Round it in a mesh editor, or let the crease angle "
+                    "leave one of its edges smooth "
+                    "(--crease-angle).",
+                    mesh_.source, vertexPlace(mesh_, vertex), why));
   }
 
   const TriangleMesh& mesh_;

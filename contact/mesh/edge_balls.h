@@ -1,4 +1,5 @@
-// edge_balls: where creases are, and the ball that touches all faces at each of their vertices (round_edges.h gives the equations).
+// edge_balls: where creases are, and the ball that touches all faces at each of their
+// vertices (round_edges.h gives the equations).
 #pragma once
 #include <array>
 #include <cstdint>

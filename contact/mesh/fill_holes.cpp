@@ -15,11 +15,13 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kFlatEnough = 0.25;  // distance of a rim's vertices from their plane, relative to the rim's greatest extent
+// distance of a rim's vertices from their plane, relative to the rim's greatest extent
+constexpr double kFlatEnough = 0.25;
 
 using Loop = std::vector<std::int32_t>;
 
-// Rims of holes, so directed that a triangle along them faces as its neighbours do. Rims that touch themselves or others are left out.
+// Rims of holes, so directed that a triangle along them faces as its neighbours do. Rims that
+// touch themselves or others are left out.
 std::vector<Loop> findLoops(const std::vector<HalfEdge>& half_edges) {
   constexpr std::int32_t kSeveral = -1;
   std::map<std::int32_t, std::int32_t> next;
@@ -52,7 +54,8 @@ bool isFlatEnough(const std::vector<Vec3>& rim) {
     high = high.cwiseMax(rim[i]);
   }
   const double room = kFlatEnough * (high - low).maxCoeff();
-  return std::all_of(rim.begin(), rim.end(), [&](const Vec3& p) { return std::abs((p - middle).dot(n.normalized())) <= room; });
+  return std::all_of(rim.begin(), rim.end(),
+                     [&](const Vec3& p) { return std::abs((p - middle).dot(n.normalized())) <= room; });
 }
 
 class HoleFiller {
@@ -72,9 +75,10 @@ class HoleFiller {
     for (const Fill& fill : fills_) triangles += fill.triangles;
     std::string left = left_ > 0 ? fmt::format("; {} left: larger than asked, or not flat enough", left_) : "";
     if (sheets > 0) left += fmt::format("; {} left open that would enclose nothing", counted(sheets, "sheet"));
-    return MeshChange{"filled-holes", static_cast<int>(fills_.size()),
-                      fmt::format("filled {} with {}; the first is at {}{}", counted(static_cast<int>(fills_.size()), "hole"),
-                                  counted(static_cast<int>(triangles), "triangle"), vertexPlace(mesh_, fills_[0].rim_vertex), left)};
+    return MeshChange{
+        "filled-holes", static_cast<int>(fills_.size()),
+        fmt::format("filled {} with {}; the first is at {}{}", counted(static_cast<int>(fills_.size()), "hole"),
+                    counted(static_cast<int>(triangles), "triangle"), vertexPlace(mesh_, fills_[0].rim_vertex), left)};
   }
 
  private:
@@ -100,8 +104,8 @@ class HoleFiller {
     return true;
   }
 
-  // The rim of a sheet is a loop too. Filled, a flat sheet would be two faces on top of each other: such pieces stay open. Returns how many
-  // fills were taken back.
+  // The rim of a sheet is a loop too. Filled, a flat sheet would be two faces on top of each other: such pieces stay
+  // open. Returns how many fills were taken back.
   int reopenSheets() {
     if (fills_.empty()) return 0;
     const std::vector<HalfEdge> half_edges = sortedHalfEdges(mesh_.triangles);
@@ -132,7 +136,9 @@ class HoleFiller {
         fresh.push_back({low, high});
       }
     }
-    const auto taken = [&](const VertexPair& e) { return std::binary_search(taken_.begin(), taken_.end(), e) || filled_edges_.count(e); };
+    const auto taken = [&](const VertexPair& e) {
+      return std::binary_search(taken_.begin(), taken_.end(), e) || filled_edges_.count(e);
+    };
     if (std::any_of(fresh.begin(), fresh.end(), taken)) return false;
     filled_edges_.insert(fresh.begin(), fresh.end());
     return true;
@@ -149,6 +155,8 @@ class HoleFiller {
 
 }  // namespace
 
-MaybeChange fillHoles(TriangleMesh& mesh, int most_edges) { return HoleFiller(mesh).fill(static_cast<std::size_t>(most_edges)); }
+MaybeChange fillHoles(TriangleMesh& mesh, int most_edges) {
+  return HoleFiller(mesh).fill(static_cast<std::size_t>(most_edges));
+}
 
 }  // namespace pincer::contact

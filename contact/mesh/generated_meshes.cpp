@@ -59,7 +59,8 @@ TriangleMesh subdividedOnUnitSphere(const TriangleMesh& coarse) {
   const auto middle = [&](std::int32_t a, std::int32_t b) {
     const auto [it, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(fine.vertices.size()));
     if (is_new) {
-      fine.vertices.push_back((fine.vertices[static_cast<std::size_t>(a)] + fine.vertices[static_cast<std::size_t>(b)]).normalized());
+      fine.vertices.push_back(
+          (fine.vertices[static_cast<std::size_t>(a)] + fine.vertices[static_cast<std::size_t>(b)]).normalized());
     }
     return it->second;
   };
@@ -75,13 +76,15 @@ TriangleMesh icosahedron() {
   TriangleMesh mesh;
   mesh.vertices = {{-1, t, 0},  {1, t, 0},  {-1, -t, 0}, {1, -t, 0}, {0, -1, t},  {0, 1, t},
                    {0, -1, -t}, {0, 1, -t}, {t, 0, -1},  {t, 0, 1},  {-t, 0, -1}, {-t, 0, 1}};
-  mesh.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                    {3, 9, 4},  {3, 4, 2}, {3, 2, 6}, {3, 6, 8},  {3, 8, 9},   {4, 9, 5}, {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+  mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (Vec3& v : mesh.vertices) v.normalize();
   return mesh;
 }
 
-// Each triangle cut into n^2 equal ones; vertices on its sides are shared with the neighbour's, computed once from the side's lower end.
+// Each triangle cut into n^2 equal ones; vertices on its sides are shared with the neighbour's,
+// computed once from the side's lower end.
 class FlatSubdivision {
  public:
   FlatSubdivision(const TriangleMesh& coarse, int n) : coarse_(coarse), n_(n) { fine_.vertices = coarse.vertices; }
@@ -130,7 +133,8 @@ class FlatSubdivision {
 };
 
 // A prism over the polygon of `angles` on the circle; its last side closes the polygon.
-TriangleMesh prism(const std::string& name, double radius, double half_length, const std::vector<double>& angles, int rows) {
+TriangleMesh prism(const std::string& name, double radius, double half_length, const std::vector<double>& angles,
+                   int rows) {
   PINCER_DEMAND(radius > 0 && half_length > 0 && angles.size() >= 3 && rows >= 1,
                 "cylinders: positive lengths, 3 sides and 1 row at least");
   Builder build(name);
@@ -173,7 +177,8 @@ TriangleMesh geodesicSphere(double radius, int n) {
 }
 
 TriangleMesh cylinderWithFlat(double radius, double half_length, double flat_distance, int segments, int rows) {
-  PINCER_DEMAND(0 < flat_distance && flat_distance < radius, "cylinderWithFlat: the flat lies between the axis and the round wall");
+  PINCER_DEMAND(0 < flat_distance && flat_distance < radius,
+                "cylinderWithFlat: the flat lies between the axis and the round wall");
   const double first = math::acos(flat_distance / radius);
   std::vector<double> angles;
   for (int i = 0; i <= segments; ++i) angles.push_back(first + (2 * M_PI - 2 * first) * i / segments);
@@ -205,11 +210,13 @@ TriangleMesh torus(double major, double minor, int major_segments, int minor_seg
 }
 
 TriangleMesh roundedCube(double half, double rounding, int segments) {
-  PINCER_DEMAND(0 < rounding && rounding < half && segments >= 1, "roundedCube: a rounding below half the edge, in 1 segment or more");
+  PINCER_DEMAND(0 < rounding && rounding < half && segments >= 1,
+                "roundedCube: a rounding below half the edge, in 1 segment or more");
   GridWelder weld("rounded cube", half);
   const double core = half - rounding;
   std::vector<double> grid;  // on a cube's face, so that the roundings get equal angles
-  for (int i = 0; i <= segments; ++i) grid.push_back(-core - rounding * math::tan(M_PI / 4 * (1 - static_cast<double>(i) / segments)));
+  for (int i = 0; i <= segments; ++i)
+    grid.push_back(-core - rounding * math::tan(M_PI / 4 * (1 - static_cast<double>(i) / segments)));
   for (int i = 0; i <= segments; ++i) grid.push_back(core + rounding * math::tan(M_PI / 4 * i / segments));
   const auto vertexUnder = [&](const Vec3& p) {
     const Vec3 c = p.cwiseMax(-core).cwiseMin(core);
@@ -267,7 +274,8 @@ TriangleMesh gridBox(const Vec3& half, int cells) {
 }
 
 TriangleMesh uvSphere(double radius, int rings, int segments) {
-  PINCER_DEMAND(radius > 0 && rings >= 2 && segments >= 3, "uvSphere: a positive radius, 2 rings and 3 segments at least");
+  PINCER_DEMAND(radius > 0 && rings >= 2 && segments >= 3,
+                "uvSphere: a positive radius, 2 rings and 3 segments at least");
   Builder build("uv sphere");
   for (int k = 1; k < rings; ++k) {
     for (int i = 0; i < segments; ++i) {

@@ -40,9 +40,10 @@ std::vector<HalfEdge> sortedHalfEdges(std::span<const std::array<std::int32_t, 3
   std::vector<std::size_t> end(begin.begin(), begin.end() - 1);
   forEachHalfEdge(triangles, [&](const HalfEdge& h) { list[end[static_cast<std::size_t>(h.low)]++] = h; });
   for (std::size_t v = 0; v < end.size(); ++v) {
-    std::sort(
-        list.begin() + static_cast<std::ptrdiff_t>(begin[v]), list.begin() + static_cast<std::ptrdiff_t>(end[v]),
-        [](const HalfEdge& x, const HalfEdge& y) { return std::tie(x.high, x.triangle, x.side) < std::tie(y.high, y.triangle, y.side); });
+    std::sort(list.begin() + static_cast<std::ptrdiff_t>(begin[v]), list.begin() + static_cast<std::ptrdiff_t>(end[v]),
+              [](const HalfEdge& x, const HalfEdge& y) {
+                return std::tie(x.high, x.triangle, x.side) < std::tie(y.high, y.triangle, y.side);
+              });
   }
   return list;
 }
@@ -50,7 +51,9 @@ std::vector<HalfEdge> sortedHalfEdges(std::span<const std::array<std::int32_t, 3
 std::span<const HalfEdge> edgeAt(std::span<const HalfEdge> half_edges, std::size_t first) {
   PINCER_ASSERT(first < half_edges.size());
   std::size_t end = first + 1;
-  while (end < half_edges.size() && half_edges[end].low == half_edges[first].low && half_edges[end].high == half_edges[first].high) ++end;
+  while (end < half_edges.size() && half_edges[end].low == half_edges[first].low &&
+         half_edges[end].high == half_edges[first].high)
+    ++end;
   return half_edges.subspan(first, end - first);
 }
 

@@ -1,7 +1,8 @@
 // half_edges: the edges of any validated triangle mesh, also of one that branches or is open, as runs of a sorted list.
 //
-// Half-edge i of a triangle goes from its corner i to corner (i + 1) mod 3. All half-edges between the same two vertices form one edge.
-// A triangle that names a vertex twice (ReadOptions can keep such) has no edges here: nothing hangs on it.
+// Half-edge i of a triangle goes from its corner i to corner (i + 1) mod 3. All half-edges between
+// the same two vertices form one edge. A triangle that names a vertex twice (ReadOptions can keep
+// such) has no edges here: nothing hangs on it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,10 +20,12 @@ struct HalfEdge {
   bool forward;      // from low to high
 };
 
-inline bool namesAVertexTwice(const std::array<std::int32_t, 3>& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+inline bool namesAVertexTwice(const std::array<std::int32_t, 3>& t) {
+  return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
 
-// All half-edges, sorted by (low, high, triangle, side): half-edges of one edge are neighbours in the list. Time: linear in the number of
-// triangles while no vertex is in very many.
+// All half-edges, sorted by (low, high, triangle, side): half-edges of one edge are neighbours in the list. Time:
+// linear in the number of triangles while no vertex is in very many.
 std::vector<HalfEdge> sortedHalfEdges(std::span<const std::array<std::int32_t, 3>> triangles);
 
 // The edge that begins at `first` in the sorted list.
@@ -38,10 +41,13 @@ void forEachEdge(std::span<const HalfEdge> half_edges, Visit&& visit) {
   }
 }
 
-// State of an edge: the surface ends there, branches, has two triangles that face opposite ways, or goes on as it should.
+// State of an edge: the surface ends there, branches, has two triangles that
+// face opposite ways, or goes on as it should.
 inline bool isBoundary(std::span<const HalfEdge> edge) { return edge.size() == 1; }
 inline bool isBranching(std::span<const HalfEdge> edge) { return edge.size() > 2; }
-inline bool isReversed(std::span<const HalfEdge> edge) { return edge.size() == 2 && edge[0].forward == edge[1].forward; }
+inline bool isReversed(std::span<const HalfEdge> edge) {
+  return edge.size() == 2 && edge[0].forward == edge[1].forward;
+}
 inline bool isRegular(std::span<const HalfEdge> edge) { return edge.size() == 2 && edge[0].forward != edge[1].forward; }
 
 // The vertices a half-edge runs from and to.

@@ -11,7 +11,9 @@
 namespace pincer::contact {
 namespace {
 
-double sideOf(const Vec2& a, const Vec2& b, const Vec2& p) { return (b - a).x() * (p - a).y() - (b - a).y() * (p - a).x(); }
+double sideOf(const Vec2& a, const Vec2& b, const Vec2& p) {
+  return (b - a).x() * (p - a).y() - (b - a).y() * (p - a).x();
+}
 
 bool within(const Vec2& a, const Vec2& b, const Vec2& p) {
   return (p - a).dot(p - b) <= 0;  // p is on the line through a and b
@@ -19,7 +21,8 @@ bool within(const Vec2& a, const Vec2& b, const Vec2& p) {
 
 bool segmentsMeet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const double c_side = sideOf(a, b, c), d_side = sideOf(a, b, d), a_side = sideOf(c, d, a), b_side = sideOf(c, d, b);
-  if (((c_side > 0) != (d_side > 0)) && ((a_side > 0) != (b_side > 0)) && c_side * d_side != 0 && a_side * b_side != 0) return true;
+  if (((c_side > 0) != (d_side > 0)) && ((a_side > 0) != (b_side > 0)) && c_side * d_side != 0 && a_side * b_side != 0)
+    return true;
   return (c_side == 0 && within(a, b, c)) || (d_side == 0 && within(a, b, d)) || (a_side == 0 && within(c, d, a)) ||
          (b_side == 0 && within(c, d, b));
 }
@@ -30,10 +33,10 @@ void requireOnAxisAtTheEndsOnly(const std::vector<Vec2>& profile) {
     const bool end = i == 0 || i == last;
     const double rho = profile[i].x();
     if (!profile[i].allFinite() || (end ? rho != 0 : !(rho > 0))) {
-      throw InputError(
-          fmt::format("lathe: profile[{}] = ({}, {}): its distance from the axis must be {}. The first and the last point close "
-                      "the solid on the axis, all others lie beside it.",
-                      i, rho, profile[i].y(), end ? "0" : "greater than 0"));
+      throw InputError(fmt::format(
+          "lathe: profile[{}] = ({}, {}): its distance from the axis must be {}. The first and the last point close "
+          "the solid on the axis, all others lie beside it.",
+          i, rho, profile[i].y(), end ? "0" : "greater than 0"));
     }
   }
 }
@@ -47,10 +50,10 @@ void requireSimple(const std::vector<Vec2>& profile) {
   for (std::size_t i = 0; i < sides; ++i) {
     for (std::size_t k = i + 2; k < sides; ++k) {
       if (!segmentsMeet(profile[i], profile[i + 1], profile[k], profile[k + 1])) continue;
-      throw InputError(
-          fmt::format("lathe: the profile crosses itself: its side after profile[{}] meets the side after profile[{}]. Give the "
-                      "points in their order along the outline.",
-                      i, k));
+      throw InputError(fmt::format(
+          "lathe: the profile crosses itself: its side after profile[{}] meets the side after profile[{}]. Give the "
+          "points in their order along the outline.",
+          i, k));
     }
   }
 }
@@ -67,8 +70,10 @@ double area(const std::vector<Vec2>& profile) {
 }  // namespace
 
 TriangleMesh lathe(const std::vector<Vec2>& given, int segments) {
-  if (given.size() < 3) throw InputError(fmt::format("lathe: a profile of {} points encloses nothing. Give 3 or more.", given.size()));
-  if (segments < 3 || segments > 1000) throw InputError(fmt::format("lathe: segments = {} is out of range 3 .. 1000.", segments));
+  if (given.size() < 3)
+    throw InputError(fmt::format("lathe: a profile of {} points encloses nothing. Give 3 or more.", given.size()));
+  if (segments < 3 || segments > 1000)
+    throw InputError(fmt::format("lathe: segments = {} is out of range 3 .. 1000.", segments));
   requireOnAxisAtTheEndsOnly(given);
   requireSimple(given);
   std::vector<Vec2> profile = given;

@@ -17,7 +17,8 @@ constexpr std::size_t kEnoughTriangles = 50'000;  // for a finger: facets of 1 m
 
 std::string textOf(const Vec3& p) { return fmt::format("({:g}, {:g}, {:g})", p.x(), p.y(), p.z()); }
 
-// Unit normals keep their bits, so that what was written from a mesh reads back the same. Divided first so that no square overflows.
+// Unit normals keep their bits, so that what was written from a mesh reads back the same.
+// Divided first so that no square overflows.
 Vec3 unit(const Vec3& n, double largest) {
   constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
   if (largest <= 1 && std::abs(n.squaredNorm() - 1) < kRoundOff) return n;
@@ -33,8 +34,9 @@ MeshBuilder::MeshBuilder(const MeshFile& file, const ReadOptions& options, int f
 
 void MeshBuilder::requireFew(std::size_t triangles, std::int32_t place) const {
   if (triangles <= kMaxTriangles) return;
-  file_.failAt(place, fmt::format("the mesh has more than {} triangles. Simplify (decimate) it; a finger feels {} as well.", kMaxTriangles,
-                                  kEnoughTriangles));
+  file_.failAt(place,
+               fmt::format("the mesh has more than {} triangles. Simplify (decimate) it; a finger feels {} as well.",
+                           kMaxTriangles, kEnoughTriangles));
 }
 
 void MeshBuilder::reserveFaces(std::size_t faces, std::int32_t place) {
@@ -54,8 +56,10 @@ void MeshBuilder::addVertex(const Vec3& p, std::int32_t place) {
   const Vec3 scaled = options_.metres_per_unit * p;
   const double farthest = scaled.cwiseAbs().maxCoeff();
   if (!(farthest <= kMaxCoordinate)) {
-    file_.failAt(place, fmt::format("vertex {} lies {:.3g} m from the origin along an axis; the limit is {} m. Is the unit right?",
-                                    nextVertex(), farthest, kMaxCoordinate));
+    file_.failAt(
+        place,
+        fmt::format("vertex {} lies {:.3g} m from the origin along an axis; the limit is {} m. Is the unit right?",
+                    nextVertex(), farthest, kMaxCoordinate));
   }
   mesh_.vertices.push_back(scaled);
 }
@@ -65,16 +69,18 @@ void MeshBuilder::addNormal(const Vec3& n, std::int32_t place) {
   PINCER_ASSERT(n.allFinite());
   const double largest = n.cwiseAbs().maxCoeff();
   if (largest == 0) {
-    file_.failAt(place, fmt::format("normal {} is zero and has no direction. Recompute the normals, or export the mesh without them.",
-                                    nextNormal()));
+    file_.failAt(
+        place,
+        fmt::format("normal {} is zero and has no direction. Recompute the normals, or export the mesh without them.",
+                    nextNormal()));
   }
   mesh_.normals.push_back(unit(n, largest));
 }
 
 void MeshBuilder::beginFace(std::int64_t corners, std::int32_t place) {
   if (corners > static_cast<std::int64_t>(kMaxCorners)) {
-    file_.failAt(place, fmt::format("face {} has {} corners; the limit is {}. Triangulate the mesh before export.", nextFace(), corners,
-                                    kMaxCorners));
+    file_.failAt(place, fmt::format("face {} has {} corners; the limit is {}. Triangulate the mesh before export.",
+                                    nextFace(), corners, kMaxCorners));
   }
   const auto needed = static_cast<std::size_t>(std::max<std::int64_t>(corners, 2));
   triangles_ += needed - 2;
@@ -82,7 +88,8 @@ void MeshBuilder::beginFace(std::int64_t corners, std::int32_t place) {
   faces_.push_back({corners_.size(), place, group_});
   if (corners >= 3) return;
   leaveOutIfBad(faces_.back(), [&] {
-    file_.failAt(place, fmt::format("face {} has {} corners; it needs at least 3. {}", nextFace() - 1, corners, kDelete));
+    file_.failAt(place,
+                 fmt::format("face {} has {} corners; it needs at least 3. {}", nextFace() - 1, corners, kDelete));
   });
 }
 
@@ -96,13 +103,16 @@ std::int32_t MeshBuilder::inRange(std::int64_t index, const char* what) const {
   if (index >= std::numeric_limits<std::int32_t>::min() / 2 && index <= std::numeric_limits<std::int32_t>::max() / 2) {
     return static_cast<std::int32_t>(index);
   }
-  file_.failAt(faces_.back().place, fmt::format("face {} uses {} {}; this is out of range: no file has that many. {}", nextFace() - 1, what,
-                                                index + static_cast<std::int64_t>(first_index_), kCutOffOrJoined));
+  file_.failAt(faces_.back().place,
+               fmt::format("face {} uses {} {}; this is out of range: no file has that many. {}", nextFace() - 1, what,
+                           index + static_cast<std::int64_t>(first_index_), kCutOffOrJoined));
 }
 
 TriangleMesh MeshBuilder::build() {
   if (faces_.empty()) {
-    file_.fail(fmt::format("the file has {} vertices but no face, so there is nothing to touch. Export the mesh as polygons.", vertices()));
+    file_.fail(
+        fmt::format("the file has {} vertices but no face, so there is nothing to touch. Export the mesh as polygons.",
+                    vertices()));
   }
   dropUnusedFeatures();
   mesh_.triangles.reserve(triangles_);
@@ -120,7 +130,8 @@ void MeshBuilder::addPolygons() {
     if (faces_[i].is_left_out) cutOff(before);
   }
   if (!mesh_.triangles.empty()) return;
-  file_.fail(fmt::format("none of its {} faces can be used, so there is nothing to touch. Export it again.", faces_.size()));
+  file_.fail(
+      fmt::format("none of its {} faces can be used, so there is nothing to touch. Export it again.", faces_.size()));
 }
 
 void MeshBuilder::cutOff(std::size_t triangles) {
@@ -142,7 +153,8 @@ void MeshBuilder::dropUnusedFeatures() {
   } else {
     mesh_.normals.clear();
   }
-  if (std::any_of(faces_.begin(), faces_.end(), [](const Face& f) { return f.group != 0; })) mesh_.smoothing_groups.reserve(triangles_);
+  if (std::any_of(faces_.begin(), faces_.end(), [](const Face& f) { return f.group != 0; }))
+    mesh_.smoothing_groups.reserve(triangles_);
 }
 
 void MeshBuilder::addPolygon(const Polygon& face) {
@@ -155,13 +167,15 @@ void MeshBuilder::addPolygon(const Polygon& face) {
 void MeshBuilder::checkIndices(const Polygon& face) const {
   const auto require = [&](std::int32_t index, std::size_t count, const char* what) {
     if (index < static_cast<std::int64_t>(count)) return;
-    file_.failAt(face.place, fmt::format("face {} uses {} {}, but the file has {} (from {}). {}", face.number, what,
-                                         static_cast<std::size_t>(index) + first_index_, count, first_index_, kCutOffOrJoined));
+    file_.failAt(face.place,
+                 fmt::format("face {} uses {} {}, but the file has {} (from {}). {}", face.number, what,
+                             static_cast<std::size_t>(index) + first_index_, count, first_index_, kCutOffOrJoined));
   };
   for (const Corner& c : face.corners) {
     if (c.vertex < 0) {
       file_.failAt(face.place, fmt::format("face {} uses vertex {}, but the file has {} (from {}). {}", face.number,
-                                           c.vertex + static_cast<std::int64_t>(first_index_), vertices(), first_index_, kCutOffOrJoined));
+                                           c.vertex + static_cast<std::int64_t>(first_index_), vertices(), first_index_,
+                                           kCutOffOrJoined));
     }
     require(c.vertex, vertices(), "vertex");
     require(c.normal, normals(), "normal");
@@ -170,9 +184,9 @@ void MeshBuilder::checkIndices(const Polygon& face) const {
 
 void MeshBuilder::rejectRepeatedVertex(const Polygon& face) const {
   const auto fail = [&](std::int32_t vertex) {
-    file_.failAt(face.place,
-                 fmt::format("face {} uses vertex {} at {} m twice. {}", face.number, static_cast<std::size_t>(vertex) + first_index_,
-                             textOf(mesh_.vertices[static_cast<std::size_t>(vertex)]), kDelete));
+    file_.failAt(face.place, fmt::format("face {} uses vertex {} at {} m twice. {}", face.number,
+                                         static_cast<std::size_t>(vertex) + first_index_,
+                                         textOf(mesh_.vertices[static_cast<std::size_t>(vertex)]), kDelete));
   };
   if (face.corners.size() == 3) {  // without the sorting, which would take most of the time
     const std::int32_t a = face.corners[0].vertex, b = face.corners[1].vertex, c = face.corners[2].vertex;
@@ -193,14 +207,16 @@ std::vector<CornerTriple> MeshBuilder::triplesOf(const Polygon& face) const {
   std::vector<CornerTriple> triples = triangulate(points);
   if (triples.empty() && options_.degenerate == Degenerate::keep) triples = degenerateTriples(points);
   if (triples.empty()) {
-    file_.failAt(face.place, fmt::format("face {} with {} corners has no area or crosses itself. Triangulate the mesh before export.",
-                                         face.number, face.corners.size()));
+    file_.failAt(
+        face.place,
+        fmt::format("face {} with {} corners has no area or crosses itself. Triangulate the mesh before export.",
+                    face.number, face.corners.size()));
   }
   return triples;
 }
 
-// Of a polygon with corners in the same place: its pieces without them, and an empty triangle for each; of a polygon on one line a fan of
-// empty triangles. None if the polygon crosses itself.
+// Of a polygon with corners in the same place: its pieces without them, and an empty triangle for each; of a polygon on
+// one line a fan of empty triangles. None if the polygon crosses itself.
 std::vector<CornerTriple> MeshBuilder::degenerateTriples(const std::vector<Vec3>& points) const {
   const int n = static_cast<int>(points.size());
   std::vector<Vec3> distinct;
@@ -241,8 +257,10 @@ void MeshBuilder::addTriangle(const Polygon& face, const CornerTriple& triple) {
              &p2 = mesh_.vertices[static_cast<std::size_t>(v[2])];
   if (options_.degenerate == Degenerate::reject && hasZeroArea(p0, p1, p2)) {
     const auto number = [&](std::size_t i) { return static_cast<std::size_t>(v[i]) + first_index_; };
-    file_.failAt(face.place, fmt::format("face {} has zero area: its vertices {}, {} and {} at {}, {} and {} m lie on one line. {}",
-                                         face.number, number(0), number(1), number(2), textOf(p0), textOf(p1), textOf(p2), kDelete));
+    file_.failAt(
+        face.place,
+        fmt::format("face {} has zero area: its vertices {}, {} and {} at {}, {} and {} m lie on one line. {}",
+                    face.number, number(0), number(1), number(2), textOf(p0), textOf(p1), textOf(p2), kDelete));
   }
   mesh_.triangles.push_back(v);
   if (mesh_.triangle_normals.capacity() > 0) mesh_.triangle_normals.push_back(n);

@@ -1,7 +1,9 @@
-// mesh_builder: what all readers share: it takes vertices, normals and polygons as a file lists them, and makes a validated mesh of them.
+// mesh_builder: what all readers share: it takes vertices, normals and polygons as a file lists
+// them, and makes a validated mesh of them.
 //
-// Every defect throws InputError at the place (MeshFile) that the reader gave with the vertex or face. Faces are checked at the end, since a
-// file may give a face's vertices after it. Where ReadOptions::left_out is set, a face that is bad is told there and left out. Numbers in messages count as the format does, from `first_index`.
+// Every defect throws InputError at the place (MeshFile) that the reader gave with the vertex or face. Faces are
+// checked at the end, since a file may give a face's vertices after it. Where ReadOptions::left_out is set, a face that
+// is bad is told there and left out. Numbers in messages count as the format does, from `first_index`.
 #pragma once
 #include <span>
 #include <vector>
@@ -23,7 +25,8 @@ class MeshBuilder {
   // `file` and `options` must outlive this object.
   MeshBuilder(const MeshFile& file, const ReadOptions& options, int first_index);
 
-  // Make room; the caller has checked that the file can hold so many. More faces than a mesh may have throw InputError at once.
+  // Make room; the caller has checked that the file can hold so many. More faces than
+  // a mesh may have throw InputError at once.
   void reserveVertices(std::size_t vertices) { mesh_.vertices.reserve(vertices); }
   void reserveFaces(std::size_t faces, std::int32_t place);
 
@@ -37,10 +40,12 @@ class MeshBuilder {
 
   void addVertex(const Vec3& p, std::int32_t place);  // in the file's unit, finite
   void addNormal(const Vec3& n, std::int32_t place);  // finite, of any length but zero
-  // A face is begun, then gets its corners. Indices count from 0; `normal` -1 stands for none. Whether they exist is checked at the end.
+  // A face is begun, then gets its corners. Indices count from 0; `normal` -1 stands for none.
+  // Whether they exist is checked at the end.
   void beginFace(std::int64_t corners, std::int32_t place);
   void addCorner(std::int64_t vertex, std::int64_t normal = -1);
-  // Runs `read`, which reads corners of the face begun last. If that throws InputError and bad faces are to be left out, this one is.
+  // Runs `read`, which reads corners of the face begun last. If that throws InputError and
+  // bad faces are to be left out, this one is.
   template <class Read>
   void readCorners(Read&& read) {
     leaveOutIfBad(faces_.back(), read);

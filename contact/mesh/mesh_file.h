@@ -1,4 +1,5 @@
-// mesh_file: the bytes of a mesh file while it is read: errors that name a place in it, progress, and the numbers of binary formats.
+// mesh_file: the bytes of a mesh file while it is read: errors that name a place in it,
+// progress, and the numbers of binary formats.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -52,7 +53,8 @@ template <typename T>
 T readNumber(std::string_view bytes, ByteOrder order) {
   unsigned char raw[sizeof(T)];
   const bool reverse = (order == ByteOrder::little) != (std::endian::native == std::endian::little);
-  for (std::size_t i = 0; i < sizeof(T); ++i) raw[i] = static_cast<unsigned char>(bytes[reverse ? sizeof(T) - 1 - i : i]);
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+    raw[i] = static_cast<unsigned char>(bytes[reverse ? sizeof(T) - 1 - i : i]);
   T value;
   std::memcpy(&value, raw, sizeof(T));
   return value;

@@ -1,5 +1,5 @@
-// mesh_findings: the sentences of mesh_report, one function per kind of defect. Each names the first place, by element and in millimetres,
-// and what helps; none returns anything where there is nothing to say.
+// mesh_findings: the sentences of mesh_report, one function per kind of defect. Each names the first place, by element
+// and in millimetres, and what helps; none returns anything where there is nothing to say.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace pincer::contact {
 
-// "vertex 17 at (1, 2, 3) mm", counted from 1 as mesh files do; "the edge from vertex ... to vertex ..."; "triangle 5 at (1, 2, 3) mm".
+// "vertex 17 at (1, 2, 3) mm", counted from 1 as mesh files do; "the edge from vertex ... to
+// vertex ..."; "triangle 5 at (1, 2, 3) mm".
 std::string vertexPlace(const TriangleMesh& mesh, std::int32_t vertex);
 std::string edgePlace(const TriangleMesh& mesh, const VertexPair& edge);
 std::string trianglePlace(const TriangleMesh& mesh, std::int32_t triangle);

@@ -19,7 +19,8 @@ constexpr std::array kFormats = {MeshFormat::obj, MeshFormat::stl, MeshFormat::p
 
 std::string lowerCase(std::string_view word) {
   std::string text(word);
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -65,8 +66,8 @@ std::optional<MeshFormat> formatOfBytes(std::string_view bytes) {
 
 bool isBinaryStl(std::string_view bytes) {
   constexpr std::size_t kHeader = 80, kHead = 84, kFacet = 50;
-  return bytes.size() >= kHead &&
-         bytes.size() == kHead + kFacet * static_cast<std::size_t>(readNumber<std::uint32_t>(bytes.substr(kHeader), ByteOrder::little));
+  return bytes.size() >= kHead && bytes.size() == kHead + kFacet * static_cast<std::size_t>(readNumber<std::uint32_t>(
+                                                                       bytes.substr(kHeader), ByteOrder::little));
 }
 
 double metresPerUnit(const std::string& unit) {

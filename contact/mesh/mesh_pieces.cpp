@@ -27,7 +27,8 @@ void measure(const TriangleMesh& mesh, const MeshTopology& topology, std::vector
     }
     const Vec3 area = areaVector(mesh, mesh.triangles[t]);
     piece.area += area.norm();
-    piece.volume += area.dot(cornerOf(mesh, t, 0) - cornerOf(mesh, static_cast<std::size_t>(piece.first_triangle), 0)) / 3;
+    piece.volume +=
+        area.dot(cornerOf(mesh, t, 0) - cornerOf(mesh, static_cast<std::size_t>(piece.first_triangle), 0)) / 3;
   }
 }
 
@@ -37,7 +38,8 @@ double solidAngle(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 bool boxHolds(const MeshPiece& outer, const MeshPiece& inner) {
-  return (outer.box_min.array() <= inner.box_min.array()).all() && (inner.box_max.array() <= outer.box_max.array()).all();
+  return (outer.box_min.array() <= inner.box_min.array()).all() &&
+         (inner.box_max.array() <= outer.box_max.array()).all();
 }
 
 class Nesting {
@@ -54,7 +56,8 @@ class Nesting {
       if (closed_.size() > kMostPieces || work_ > kMostAngles) return giveUp();
       bool within = false;
       for (const std::size_t outer : closed_) {
-        if (outer != inner && boxHolds(pieces_.list[outer], pieces_.list[inner]) && isInside(inner, outer)) within = !within;
+        if (outer != inner && boxHolds(pieces_.list[outer], pieces_.list[inner]) && isInside(inner, outer))
+          within = !within;
       }
       pieces_.list[inner].within = within;
     }

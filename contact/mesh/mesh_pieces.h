@@ -1,10 +1,11 @@
 // mesh_pieces: the pieces of a mesh, which of them enclose a volume, which way they face, and which lie inside others.
 //
 //   V = sum over triangles of p0 . (p1 x p2) / 6  [m^3], negative when the triangles face inwards
-//   w(p) = sum over triangles of Omega(p) / (4 pi),  Omega the solid angle under which p sees the triangle; |w| = 1 inside, 0 outside
+//   w(p) = sum over triangles of Omega(p) / (4 pi),  Omega the solid angle under which p sees
+//                                                    the triangle; |w| = 1 inside, 0 outside
 //
-// A piece inside an odd number of others that faces inwards is a cavity, and sound. Source of Omega: A. van Oosterom, J. Strackee, IEEE
-// Trans. Biomed. Eng. 30(2), 1983, eq. 8.
+// A piece inside an odd number of others that faces inwards is a cavity, and sound. Source of Omega: A. van Oosterom,
+// J. Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -29,7 +30,8 @@ struct MeshPiece {
 
 struct MeshPieces {
   std::vector<MeshPiece> list;  // as MeshTopology::piece_of numbers them
-  bool nesting_known = true;    // false: there were too many pieces to find out which lie inside others; none counts as `within`
+  // false: there were too many pieces to find out which lie inside others; none counts as `within`
+  bool nesting_known = true;
 };
 
 MeshPieces findPieces(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, const MeshTopology& topology);

@@ -14,11 +14,13 @@ constexpr int kMostHoleEdges = 1000;
 
 void requireInRange(const TriangleMesh& mesh, const RepairOptions& options) {
   if (!(options.weld >= 0 && std::isfinite(options.weld))) {
-    throw InputError(fmt::format("{}: welding distance = {} is out of range [0, inf) m; typical: 1e-5.", mesh.source, options.weld));
+    throw InputError(
+        fmt::format("{}: welding distance = {} is out of range [0, inf) m; typical: 1e-5.", mesh.source, options.weld));
   }
   if (options.fill_holes < 0 || options.fill_holes > kMostHoleEdges) {
-    throw InputError(fmt::format("{}: fill_holes = {} is out of range 0 .. {} edges. Close larger holes in a mesh editor.", mesh.source,
-                                 options.fill_holes, kMostHoleEdges));
+    throw InputError(
+        fmt::format("{}: fill_holes = {} is out of range 0 .. {} edges. Close larger holes in a mesh editor.",
+                    mesh.source, options.fill_holes, kMostHoleEdges));
   }
 }
 

@@ -27,18 +27,22 @@ bool inOneGroup(const TriangleMesh& mesh, const HalfEdge& h, const HalfEdge& k) 
 }
 
 // As findCornerNormals (connectivity.h) decides it, for meshes that may branch elsewhere.
-bool isCrease(const TriangleMesh& mesh, const std::vector<bool>& opposing, std::span<const HalfEdge> edge, double crease_angle) {
+bool isCrease(const TriangleMesh& mesh, const std::vector<bool>& opposing, std::span<const HalfEdge> edge,
+              double crease_angle) {
   const HalfEdge &h = edge[0], &k = edge[1];
   const auto normalAt = [&](std::int32_t triangle, int i) { return fileNormal(mesh, opposing, triangle, i); };
   const Vec3 *a0 = normalAt(h.triangle, h.side), *a1 = normalAt(h.triangle, h.side + 1);
   const Vec3 *b0 = normalAt(k.triangle, k.side + 1), *b1 = normalAt(k.triangle, k.side);
   if (a0 && a1 && b0 && b1) return angleBetween(*a0, *b0) > kSameNormal || angleBetween(*a1, *b1) > kSameNormal;
-  const auto area = [&](const HalfEdge& e) { return areaVector(mesh, mesh.triangles[static_cast<std::size_t>(e.triangle)]); };
+  const auto area = [&](const HalfEdge& e) {
+    return areaVector(mesh, mesh.triangles[static_cast<std::size_t>(e.triangle)]);
+  };
   const double angle = angleBetween(area(h), area(k));
   return mesh.smoothing_groups.empty() ? angle > crease_angle : angle > kSameNormal && !inOneGroup(mesh, h, k);
 }
 
-void countCreases(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, double crease_angle, MeshReport& report) {
+void countCreases(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, double crease_angle,
+                  MeshReport& report) {
   std::vector<bool> creased(mesh.vertices.size());
   const std::vector<bool> opposing = findOpposingCorners(mesh);
   forEachEdge(half_edges, [&](auto edge) {
@@ -62,7 +66,8 @@ struct TriangleQuality {
 
 Occurrences<std::int32_t> findDuplicates(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges) {
   std::vector<std::int32_t> duplicates;
-  for (const auto& equal : equalTriangles(mesh, half_edges)) duplicates.insert(duplicates.end(), equal.begin() + 1, equal.end());
+  for (const auto& equal : equalTriangles(mesh, half_edges))
+    duplicates.insert(duplicates.end(), equal.begin() + 1, equal.end());
   std::sort(duplicates.begin(), duplicates.end());
   Occurrences<std::int32_t> found;
   for (const std::int32_t t : duplicates) found.add(t);
@@ -91,7 +96,8 @@ void measure(const TriangleMesh& mesh, const std::vector<bool>& used, MeshReport
     report.box_min = report.box_min.cwiseMin(mesh.vertices[i]);
     report.box_max = report.box_max.cwiseMax(mesh.vertices[i]);
   }
-  const Vec3 origin = vertex(mesh, mesh.triangles[0][0]);  // near the mesh, so that a mesh far from B's origin loses no digits
+  // near the mesh, so that a mesh far from B's origin loses no digits
+  const Vec3 origin = vertex(mesh, mesh.triangles[0][0]);
   for (const Triangle& t : mesh.triangles) {
     const Vec3 area = areaVector(mesh, t);
     report.area += area.norm();
@@ -160,11 +166,12 @@ MeshReport inspect(const TriangleMesh& mesh, const InspectOptions& options) {
 
   const double size = (report.box_max - report.box_min).maxCoeff();
   for (const MaybeFinding& finding :
-       {boundaryFinding(mesh, topology), branchingFinding(mesh, topology), reversedFinding(mesh, topology), touchingFinding(mesh, topology),
-        flippedPieceFinding(mesh, pieces), flatPieceFinding(mesh, pieces), zeroAreaFinding(mesh, quality.zero_area),
-        duplicateTriangleFinding(mesh, quality.duplicate), sizeFinding(size, options.metres_per_unit), needleFinding(mesh, quality.needle),
-        opposingNormalFinding(mesh, findOpposingNormals(mesh)), duplicateVertexFinding(mesh, first), unusedVertexFinding(mesh, used),
-        severalPiecesFinding(mesh, pieces), nestedPieceFinding(mesh, pieces)}) {
+       {boundaryFinding(mesh, topology), branchingFinding(mesh, topology), reversedFinding(mesh, topology),
+        touchingFinding(mesh, topology), flippedPieceFinding(mesh, pieces), flatPieceFinding(mesh, pieces),
+        zeroAreaFinding(mesh, quality.zero_area), duplicateTriangleFinding(mesh, quality.duplicate),
+        sizeFinding(size, options.metres_per_unit), needleFinding(mesh, quality.needle),
+        opposingNormalFinding(mesh, findOpposingNormals(mesh)), duplicateVertexFinding(mesh, first),
+        unusedVertexFinding(mesh, used), severalPiecesFinding(mesh, pieces), nestedPieceFinding(mesh, pieces)}) {
     if (finding) report.findings.push_back(*finding);
   }
   return report;

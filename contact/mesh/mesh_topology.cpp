@@ -86,14 +86,16 @@ MeshTopology findTopology(const TriangleMesh& mesh, const std::vector<HalfEdge>&
 }
 
 // They meet at the edge between the two lowest of their vertices.
-std::vector<std::vector<std::int32_t>> equalTriangles(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges) {
+std::vector<std::vector<std::int32_t>> equalTriangles(const TriangleMesh& mesh,
+                                                      const std::vector<HalfEdge>& half_edges) {
   std::vector<std::vector<std::int32_t>> groups;
   std::vector<std::array<std::int32_t, 2>> tops;  // third vertex, triangle
   forEachEdge(half_edges, [&](auto edge) {
     if (edge.size() < 2) return;
     tops.clear();
     for (const HalfEdge& h : edge) {
-      const std::int32_t top = mesh.triangles[static_cast<std::size_t>(h.triangle)][static_cast<std::size_t>((h.side + 2) % 3)];
+      const std::int32_t top =
+          mesh.triangles[static_cast<std::size_t>(h.triangle)][static_cast<std::size_t>((h.side + 2) % 3)];
       if (top > h.high) tops.push_back({top, h.triangle});
     }
     std::sort(tops.begin(), tops.end());
@@ -120,7 +122,9 @@ std::vector<std::int32_t> firstAtSamePlace(const TriangleMesh& mesh, const std::
     double x, y, z;
     std::int32_t vertex;
     bool samePlace(const Key& o) const { return x == o.x && y == o.y && z == o.z; }
-    bool operator<(const Key& o) const { return x != o.x ? x < o.x : y != o.y ? y < o.y : z != o.z ? z < o.z : vertex < o.vertex; }
+    bool operator<(const Key& o) const {
+      return x != o.x ? x < o.x : y != o.y ? y < o.y : z != o.z ? z < o.z : vertex < o.vertex;
+    }
   };
   std::vector<Key> keys;
   for (std::size_t i = 0; i < candidate.size(); ++i) {

@@ -1,7 +1,9 @@
-// mesh_topology: how the triangles of any validated mesh hang together, also where they branch, end, touch or face opposite ways.
+// mesh_topology: how the triangles of any validated mesh hang together, also where they
+// branch, end, touch or face opposite ways.
 //
 //   piece  triangles joined by edges;  loop  open edges joined by vertices: the rim of a hole, or of a sheet
-//   fan    corners around a vertex joined across edges; a vertex with several fans is one where the surface touches itself
+//   fan    corners around a vertex joined across edges; a vertex with several
+//          fans is one where the surface touches itself
 #pragma once
 #include <array>
 #include <cstdint>
@@ -34,7 +36,8 @@ struct MeshTopology {
   int loops = 0;
   int longest_loop = 0;  // edges of the loop that has most
   std::int32_t longest_loop_vertex = -1;
-  std::vector<std::int32_t> piece_of;  // per triangle; numbered in the order of their first triangles; -1 for triangles without edges
+  // per triangle; numbered in the order of their first triangles; -1 for triangles without edges
+  std::vector<std::int32_t> piece_of;
   int pieces = 0;
 };
 
@@ -44,9 +47,11 @@ MeshTopology findTopology(const TriangleMesh& mesh, const std::vector<HalfEdge>&
 void joinFans(std::span<const HalfEdge> edge, UnionFind& fans);
 
 // Triangles that have the same vertices, whichever way they face: groups of at least two, each in increasing order.
-std::vector<std::vector<std::int32_t>> equalTriangles(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges);
+std::vector<std::vector<std::int32_t>> equalTriangles(const TriangleMesh& mesh,
+                                                      const std::vector<HalfEdge>& half_edges);
 
-// For each vertex the first one at exactly its place, among those that `candidate` marks; other vertices stand for themselves.
+// For each vertex the first one at exactly its place, among those that `candidate`
+// marks; other vertices stand for themselves.
 std::vector<std::int32_t> firstAtSamePlace(const TriangleMesh& mesh, const std::vector<bool>& candidate);
 
 // Vertices that a triangle names.

@@ -147,10 +147,12 @@ std::string MeshWriter::stlBinary() const {
 }
 
 std::string MeshWriter::plyHeader(const char* encoding, bool normals) const {
-  std::string out = fmt::format("ply\nformat {} 1.0\ncomment written by pincer\nelement vertex {}\n", encoding, mesh_.vertices.size());
+  std::string out = fmt::format("ply\nformat {} 1.0\ncomment written by pincer\nelement vertex {}\n", encoding,
+                                mesh_.vertices.size());
   for (const char* name : {"x", "y", "z"}) out += fmt::format("property double {}\n", name);
   if (normals) out += "property double nx\nproperty double ny\nproperty double nz\n";
-  return out + fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", mesh_.triangles.size());
+  return out +
+         fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", mesh_.triangles.size());
 }
 
 // Vertices and faces as PLY and OFF write them in text.
@@ -190,7 +192,8 @@ std::string MeshWriter::plyBinary() const {
 
 std::string MeshWriter::off() const {
   const auto normals = vertexNormals(mesh_);
-  std::string out = fmt::format("{}\n{} {} 0\n", normals ? "NOFF" : "OFF", mesh_.vertices.size(), mesh_.triangles.size());
+  std::string out =
+      fmt::format("{}\n{} {} 0\n", normals ? "NOFF" : "OFF", mesh_.vertices.size(), mesh_.triangles.size());
   addLines(out, normals);
   return out;
 }
@@ -204,7 +207,8 @@ bool hasPartialNormals(const TriangleMesh& mesh) {
 
 std::string formatMesh(const TriangleMesh& mesh, MeshFormat format, const WriteOptions& options) {
   if (!(options.metres_per_unit > 0) || !std::isfinite(options.metres_per_unit)) {
-    throw InputError(fmt::format("metres per unit = {} must be a finite number above 0: 0.001 for millimetres.", options.metres_per_unit));
+    throw InputError(fmt::format("metres per unit = {} must be a finite number above 0: 0.001 for millimetres.",
+                                 options.metres_per_unit));
   }
   const MeshWriter writer(mesh, options);
   switch (format) {
@@ -222,8 +226,8 @@ std::string formatMesh(const TriangleMesh& mesh, MeshFormat format, const WriteO
 void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh, const WriteOptions& options) {
   const auto format = formatOfName(path.string());
   if (!format)
-    throw InputError(
-        fmt::format("{}: the name's ending doesn't tell the format. Let it end like an {} file's.", path.string(), kMeshFormats));
+    throw InputError(fmt::format("{}: the name's ending doesn't tell the format. Let it end like an {} file's.",
+                                 path.string(), kMeshFormats));
   writeAtomically(path.string(), formatMesh(mesh, *format, options));
 }
 
@@ -231,7 +235,8 @@ std::vector<std::string> lossesOf(const TriangleMesh& mesh, MeshFormat format, c
   std::vector<std::string> losses;
   if (format == MeshFormat::stl) {
     if (!options.ascii) losses.emplace_back("coordinates beyond the 24 bits of a float");
-    losses.emplace_back("vertices' numbers, unused vertices, and which of several vertices in one place a triangle uses");
+    losses.emplace_back(
+        "vertices' numbers, unused vertices, and which of several vertices in one place a triangle uses");
   }
   if (format != MeshFormat::obj && !mesh.smoothing_groups.empty()) losses.emplace_back("smoothing groups");
   const bool keeps_normals = format == MeshFormat::obj   ? !hasPartialNormals(mesh)

@@ -1,9 +1,10 @@
 // mesh_writer: triangle meshes as OBJ, STL, PLY and OFF files that mesh_reader reads back.
 //
-// Text has as many digits (17 at most) as it takes to get the same double back; binary PLY has doubles. So with one metre per unit, a mesh
-// comes back with the same bits, apart from what its format can't hold (lossesOf): binary STL has floats, and STL of either kind has no
-// vertices, so that unused ones vanish and those in one place become one; only OBJ has smoothing groups; PLY and OFF have one normal per
-// vertex, so that normals are left out where a vertex has several, or none.
+// Text has as many digits (17 at most) as it takes to get the same double back; binary PLY has doubles. So with
+// one metre per unit, a mesh comes back with the same bits, apart from what its format can't hold (lossesOf):
+// binary STL has floats, and STL of either kind has no vertices, so that unused ones vanish and those in one
+// place become one; only OBJ has smoothing groups; PLY and OFF have one normal per vertex, so that normals are
+// left out where a vertex has several, or none.
 #pragma once
 #include <filesystem>
 #include <string>

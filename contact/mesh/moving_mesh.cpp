@@ -40,8 +40,8 @@ void MovingMesh::addFace(const std::array<std::int32_t, 3>& corners, const Vec3&
 
 void MovingMesh::addSide(std::int32_t a, std::int32_t b, std::int32_t source) { sides_.push_back({a, b, source}); }
 
-// Twice the area across the normal is a quadratic in rho. A part that begins with no area (at the tip of a cone) grows with the radius; there
-// the constant vanishes and the linear term's root is what counts.
+// Twice the area across the normal is a quadratic in rho. A part that begins with no area (at the tip of a cone) grows
+// with the radius; there the constant vanishes and the linear term's root is what counts.
 double MovingMesh::largestOf(const Face& face) const {
   const MovingPoint &x = point(face.corners[0]), &y = point(face.corners[1]), &z = point(face.corners[2]);
   const Vec3 e = y.p - x.p, f = z.p - x.p, de = y.w - x.w, df = z.w - x.w;

@@ -14,8 +14,10 @@ OpenMesh::TriConnectivity halfEdgeMesh(const TriangleMesh& mesh) {
   half_edges.reserve(mesh.vertices.size(), mesh.triangles.size() * 3 / 2 + 3, mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) half_edges.new_vertex();
   for (const auto& [a, b, c] : mesh.triangles) {
-    const auto face = half_edges.add_face(OpenMesh::VertexHandle(a), OpenMesh::VertexHandle(b), OpenMesh::VertexHandle(c));
-    if (!face.is_valid()) throw std::logic_error(mesh.source + ": a mesh that isn't manifold has come as far as its connectivity");
+    const auto face =
+        half_edges.add_face(OpenMesh::VertexHandle(a), OpenMesh::VertexHandle(b), OpenMesh::VertexHandle(c));
+    if (!face.is_valid())
+      throw std::logic_error(mesh.source + ": a mesh that isn't manifold has come as far as its connectivity");
   }
   return half_edges;
 }

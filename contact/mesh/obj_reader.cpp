@@ -51,8 +51,8 @@ bool isOneOf(std::string_view word, std::initializer_list<std::string_view> list
 TriangleMesh ObjParser::parse() {
   while (lines_.next()) readLine();
   if (last_texture_ >= static_cast<std::int64_t>(textures_)) {
-    file_.failAt(last_texture_line_,
-                 fmt::format("a face uses texture coordinate {}, but the file has {}. {}", last_texture_ + 1, textures_, kCutOffOrJoined));
+    file_.failAt(last_texture_line_, fmt::format("a face uses texture coordinate {}, but the file has {}. {}",
+                                                 last_texture_ + 1, textures_, kCutOffOrJoined));
   }
   return builder_.build();
 }
@@ -65,21 +65,24 @@ void ObjParser::readLine() {
   if (keyword == "vt") return readTexture();
   if (keyword == "s") return readSmoothingGroup();
   if (isObjKeyword(keyword)) return;
-  if (isOneOf(keyword,
-              {"vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp", "end", "con"})) {
-    lines_.fail(
-        fmt::format("\"{}\" belongs to a free-form curve or surface; only polygons can be read. Export the model as a mesh.", keyword));
+  if (isOneOf(keyword, {"vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv",
+                        "sp", "end", "con"})) {
+    lines_.fail(fmt::format(
+        "\"{}\" belongs to a free-form curve or surface; only polygons can be read. Export the model as a mesh.",
+        keyword));
   }
-  lines_.fail(fmt::format("{} is not a keyword of an OBJ mesh (v, vn, vt, f, g, o, s, usemtl, mtllib, l, p). Is this an OBJ file?",
-                          inQuotes(keyword)));
+  lines_.fail(fmt::format(
+      "{} is not a keyword of an OBJ mesh (v, vn, vt, f, g, o, s, usemtl, mtllib, l, p). Is this an OBJ file?",
+      inQuotes(keyword)));
 }
 
 void ObjParser::readVertex() {
   const auto& words = lines_.words();
   const std::size_t values = words.size() - 1;
   if (values != 3 && values != 4 && values != 6 && values != 7) {
-    lines_.fail(fmt::format("vertex {} has {} numbers; it needs 3 (x y z), and may have a weight and a colour (4, 6 or 7).",
-                            builder_.nextVertex(), values));
+    lines_.fail(
+        fmt::format("vertex {} has {} numbers; it needs 3 (x y z), and may have a weight and a colour (4, 6 or 7).",
+                    builder_.nextVertex(), values));
   }
   constexpr std::array<std::string_view, 7> kNames = {"x", "y", "z", "value 4", "value 5", "value 6", "value 7"};
   std::array<double, 7> value{};
@@ -92,8 +95,10 @@ void ObjParser::readVertex() {
 
 void ObjParser::readNormal() {
   const auto& words = lines_.words();
-  if (words.size() != 4) lines_.fail(fmt::format("normal {} has {} numbers; it needs 3.", builder_.nextNormal(), words.size() - 1));
-  builder_.addNormal({lines_.number(words[1], "x"), lines_.number(words[2], "y"), lines_.number(words[3], "z")}, lines_.line());
+  if (words.size() != 4)
+    lines_.fail(fmt::format("normal {} has {} numbers; it needs 3.", builder_.nextNormal(), words.size() - 1));
+  builder_.addNormal({lines_.number(words[1], "x"), lines_.number(words[2], "y"), lines_.number(words[3], "z")},
+                     lines_.line());
 }
 
 void ObjParser::readTexture() {
@@ -121,12 +126,14 @@ void ObjParser::readFace() {
 }
 
 void ObjParser::readCorners(const std::vector<std::string_view>& words) {
-  if (words.size() < 4) lines_.fail(fmt::format("face {} has {} corners; it needs at least 3.", builder_.nextFace() - 1, words.size() - 1));
+  if (words.size() < 4)
+    lines_.fail(fmt::format("face {} has {} corners; it needs at least 3.", builder_.nextFace() - 1, words.size() - 1));
   const CornerForm first = readCorner(words[1]);
   for (std::size_t i = 2; i < words.size(); ++i) {
     if (readCorner(words[i]) == first) continue;
-    lines_.fail(fmt::format("corner {} is written unlike the face's first corner {}: all corners of a face have the same parts.",
-                            inQuotes(words[i]), inQuotes(words[1])));
+    lines_.fail(fmt::format(
+        "corner {} is written unlike the face's first corner {}: all corners of a face have the same parts.",
+        inQuotes(words[i]), inQuotes(words[1])));
   }
 }
 
@@ -139,9 +146,11 @@ CornerForm ObjParser::readCorner(std::string_view word) {
     if (slash == std::string_view::npos) break;
     rest.remove_prefix(slash + 1);
     if (parts == 3)
-      lines_.fail(fmt::format("corner {} has more than three parts; it is written v, v/vt, v//vn or v/vt/vn.", inQuotes(word)));
+      lines_.fail(
+          fmt::format("corner {} has more than three parts; it is written v, v/vt, v//vn or v/vt/vn.", inQuotes(word)));
   }
-  if (parts > 1 && part[parts - 1].empty()) lines_.fail(fmt::format("corner {} ends with a slash; an index is missing.", inQuotes(word)));
+  if (parts > 1 && part[parts - 1].empty())
+    lines_.fail(fmt::format("corner {} ends with a slash; an index is missing.", inQuotes(word)));
   const CornerForm form = {parts > 1 && !part[1].empty(), parts == 3};
   builder_.addCorner(readIndex(part[0], "vertex", builder_.vertices()),
                      form.normal ? readIndex(part[2], "normal", builder_.normals()) : -1);
@@ -157,15 +166,19 @@ std::int64_t ObjParser::readIndex(std::string_view word, std::string_view what, 
   const std::int64_t index = lines_.integer(word, what);
   if (index > 0) return index - 1;
   const std::size_t face = builder_.nextFace() - 1;
-  if (index == 0) lines_.fail(fmt::format("face {} uses {} 0; indices begin at 1 (or at -1, the last one so far).", face, what));
+  if (index == 0)
+    lines_.fail(fmt::format("face {} uses {} 0; indices begin at 1 (or at -1, the last one so far).", face, what));
   const auto before = static_cast<std::int64_t>(count);
-  if (index < -before) lines_.fail(fmt::format("face {} uses {} {}, but there are only {} before it.", face, what, index, before));
+  if (index < -before)
+    lines_.fail(fmt::format("face {} uses {} {}, but there are only {} before it.", face, what, index, before));
   return before + index;
 }
 
 }  // namespace
 
-bool isObjKeyword(std::string_view word) { return isOneOf(word, {"v", "f", "vn", "vt", "s", "g", "o", "usemtl", "mtllib", "l", "p"}); }
+bool isObjKeyword(std::string_view word) {
+  return isOneOf(word, {"v", "f", "vn", "vt", "s", "g", "o", "usemtl", "mtllib", "l", "p"});
+}
 
 TriangleMesh readObj(MeshFile& file, const ReadOptions& options) { return ObjParser(file, options).parse(); }
 

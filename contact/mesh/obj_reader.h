@@ -1,10 +1,10 @@
 // obj_reader: Wavefront OBJ.
 //
-// Read: v (with an optional weight of 1 or a colour), vn, vt, s, f with corners v, v/vt, v//vn, v/vt/vn, indices from 1 or, negative, back
-// from the last. Accepted without effect: g, o, usemtl, mtllib (names and looks), l and p (lines and points have no surface). Refused by
-// name: free-form curves and surfaces, and every keyword that isn't OBJ's.
-// Source: Wavefront, "Object Files (.obj)", appendix B1 of the manual of the Advanced Visualizer. A file whose only groups are "s off" has
-// none: programs write it by default, and taken at its word every facet would be felt.
+// Read: v (with an optional weight of 1 or a colour), vn, vt, s, f with corners v, v/vt, v//vn, v/vt/vn, indices from 1
+// or, negative, back from the last. Accepted without effect: g, o, usemtl, mtllib (names and looks), l and p (lines and
+// points have no surface). Refused by name: free-form curves and surfaces, and every keyword that isn't OBJ's. Source:
+// Wavefront, "Object Files (.obj)", appendix B1 of the manual of the Advanced Visualizer. A file whose only groups are
+// "s off" has none: programs write it by default, and taken at its word every facet would be felt.
 #pragma once
 #include <string_view>
 

@@ -22,8 +22,11 @@ void forEachNormal(const TriangleMesh& mesh, Visit&& visit) {
 }  // namespace
 
 std::vector<bool> findOpposingCorners(const TriangleMesh& mesh) {
-  std::map<std::pair<std::int32_t, std::int32_t>, Vec3> areas;  // of the triangles with a normal at a vertex, where one opposes its own
-  const auto opposes = [&](std::int32_t n, const Vec3& area) { return mesh.normals[static_cast<std::size_t>(n)].dot(area) < 0; };
+  // of the triangles with a normal at a vertex, where one opposes its own
+  std::map<std::pair<std::int32_t, std::int32_t>, Vec3> areas;
+  const auto opposes = [&](std::int32_t n, const Vec3& area) {
+    return mesh.normals[static_cast<std::size_t>(n)].dot(area) < 0;
+  };
   forEachNormal(mesh, [&](std::size_t, std::int32_t vertex, std::int32_t n, const Vec3& area) {
     if (opposes(n, area)) areas.try_emplace({vertex, n}, Vec3::Zero());
   });
@@ -39,7 +42,8 @@ std::vector<bool> findOpposingCorners(const TriangleMesh& mesh) {
   return opposing;
 }
 
-const Vec3* usableFileNormal(const TriangleMesh& mesh, std::size_t t, std::size_t i, const std::vector<bool>& opposing) {
+const Vec3* usableFileNormal(const TriangleMesh& mesh, std::size_t t, std::size_t i,
+                             const std::vector<bool>& opposing) {
   const std::int32_t n = mesh.triangle_normals[t][i % 3];
   if (n < 0 || (!opposing.empty() && opposing[3 * t + i % 3])) return nullptr;
   return &mesh.normals[static_cast<std::size_t>(n)];

@@ -12,25 +12,27 @@ constexpr std::size_t kMaxLines = 1000;  // of elements and properties: real fil
 
 PlyType typeOf(std::string_view word, const TextLines& lines) {
   constexpr std::array<std::string_view, 8> kC = {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"};
-  constexpr std::array<std::string_view, 8> kSized = {"int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64"};
+  constexpr std::array<std::string_view, 8> kSized = {"int8",  "uint8",  "int16",   "uint16",
+                                                      "int32", "uint32", "float32", "float64"};
   for (std::size_t i = 0; i < kC.size(); ++i) {
     if (word == kC[i] || word == kSized[i]) return static_cast<PlyType>(i);
   }
-  lines.fail(
-      fmt::format("type {} is unknown. A PLY type is one of {}, or {}.", inQuotes(word), fmt::join(kC, ", "), fmt::join(kSized, ", ")));
+  lines.fail(fmt::format("type {} is unknown. A PLY type is one of {}, or {}.", inQuotes(word), fmt::join(kC, ", "),
+                         fmt::join(kSized, ", ")));
 }
 
 void readFormat(TextLines& lines, PlyHeader& header) {
   constexpr std::array<std::string_view, 3> kNames = {"ascii", "binary_little_endian", "binary_big_endian"};
   const auto& words = lines.words();
   if (words.size() != 3 || words[0] != "format") {
-    lines.fail(fmt::format("the line after \"ply\" must be \"format\" with {} and 1.0. The file is damaged; export it again.",
-                           fmt::join(kNames, " or ")));
+    lines.fail(
+        fmt::format("the line after \"ply\" must be \"format\" with {} and 1.0. The file is damaged; export it again.",
+                    fmt::join(kNames, " or ")));
   }
   const auto* const name = std::find(kNames.begin(), kNames.end(), words[1]);
   if (name == kNames.end() || words[2] != "1.0") {
-    lines.fail(fmt::format("format {} {} is unknown; it is one of {}, version 1.0. Export the mesh again.", inQuotes(words[1]),
-                           inQuotes(words[2]), fmt::join(kNames, ", ")));
+    lines.fail(fmt::format("format {} {} is unknown; it is one of {}, version 1.0. Export the mesh again.",
+                           inQuotes(words[1]), inQuotes(words[2]), fmt::join(kNames, ", ")));
   }
   header.encoding = static_cast<PlyEncoding>(name - kNames.begin());
 }
@@ -40,8 +42,10 @@ void addElement(const TextLines& lines, PlyHeader& header) {
   if (words.size() != 3) lines.fail("an element is written \"element\", its name and its count.");
   const std::int64_t count = lines.integer(words[2], "element count");
   if (count < 0)
-    lines.fail(fmt::format("element {} has the count {}, which can't be negative. Export the mesh again.", inQuotes(words[1]), count));
-  const bool twice = std::any_of(header.elements.begin(), header.elements.end(), [&](const PlyElement& e) { return e.name == words[1]; });
+    lines.fail(fmt::format("element {} has the count {}, which can't be negative. Export the mesh again.",
+                           inQuotes(words[1]), count));
+  const bool twice = std::any_of(header.elements.begin(), header.elements.end(),
+                                 [&](const PlyElement& e) { return e.name == words[1]; });
   if (twice) lines.fail(fmt::format("element {} is announced twice. Export the mesh again.", inQuotes(words[1])));
   header.elements.push_back({std::string(words[1]), static_cast<std::size_t>(count), lines.line(), {}});
 }
@@ -53,11 +57,13 @@ void addProperty(const TextLines& lines, PlyHeader& header) {
   property.is_list = words.size() > 1 && words[1] == "list";
   if (words.size() != (property.is_list ? 5u : 3u)) {
     lines.fail(
-        "a property is written \"property\", its type and its name, or \"property list\", the count's type, the items' and its name.");
+        "a property is written \"property\", its type and its name, or \"property list\", the count's type, the items' "
+        "and its name.");
   }
   if (property.is_list) property.count_type = typeOf(words[2], lines);
   if (property.is_list && !isInteger(property.count_type)) {
-    lines.fail(fmt::format("a list's count can't be of type {}; it must be a type of whole numbers.", inQuotes(words[2])));
+    lines.fail(
+        fmt::format("a list's count can't be of type {}; it must be a type of whole numbers.", inQuotes(words[2])));
   }
   property.type = typeOf(words[property.is_list ? 3 : 1], lines);
   property.name = words.back();
@@ -77,18 +83,20 @@ std::size_t shortest(const PlyElement& element, PlyEncoding encoding) {  // [byt
 }
 
 void requireRoom(const TextLines& lines, const PlyHeader& header, const MeshFile& file) {
-  std::size_t room = lines.bytesLeft() + (header.encoding == PlyEncoding::ascii ? 1 : 0);  // a last line may lack its end
+  // a last line may lack its end
+  std::size_t room = lines.bytesLeft() + (header.encoding == PlyEncoding::ascii ? 1 : 0);
   for (const PlyElement& element : header.elements) {
     const std::size_t each = shortest(element, header.encoding);
     if (each == 0 && element.count > 0) {
-      file.failAt(element.line,
-                  fmt::format("element {} has no property, so it can't have {} entries.", inQuotes(element.name), element.count));
+      file.failAt(element.line, fmt::format("element {} has no property, so it can't have {} entries.",
+                                            inQuotes(element.name), element.count));
     }
     if (each > 0 && element.count > room / each) {
-      file.failAt(element.line,
-                  fmt::format("{} of {} need more than the {} bytes that follow. The file is cut off or its header is damaged; "
-                              "export or copy it again.",
-                              element.count, inQuotes(element.name), lines.bytesLeft()));
+      file.failAt(
+          element.line,
+          fmt::format("{} of {} need more than the {} bytes that follow. The file is cut off or its header is damaged; "
+                      "export or copy it again.",
+                      element.count, inQuotes(element.name), lines.bytesLeft()));
     }
     room -= each * element.count;
   }
@@ -99,7 +107,8 @@ void requireRoom(const TextLines& lines, const PlyHeader& header, const MeshFile
 PlyHeader readPlyHeader(TextLines& lines, const MeshFile& file) {
   PlyHeader header;
   const auto next = [&] {
-    if (!lines.next()) lines.fail("the header has no end (\"end_header\"): the file is cut off. Export or copy it again.");
+    if (!lines.next())
+      lines.fail("the header has no end (\"end_header\"): the file is cut off. Export or copy it again.");
   };
   if (!lines.next() || lines.words().size() != 1 || lines.words()[0] != "ply") {
     lines.fail("the first line must be \"ply\". Is this a PLY file?");
@@ -120,7 +129,8 @@ PlyHeader readPlyHeader(TextLines& lines, const MeshFile& file) {
     else if (keyword == "property")
       addProperty(lines, header);
     else
-      lines.fail(fmt::format("{} is not a keyword of a PLY header (element, property, comment, obj_info, end_header).", inQuotes(keyword)));
+      lines.fail(fmt::format("{} is not a keyword of a PLY header (element, property, comment, obj_info, end_header).",
+                             inQuotes(keyword)));
   }
   requireRoom(lines, header, file);
   return header;

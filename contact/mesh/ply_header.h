@@ -1,6 +1,7 @@
 // ply_header: what a PLY file says about its data.
 //
-//   ply / format ascii|binary_little_endian|binary_big_endian 1.0 / element NAME COUNT / property [list COUNT_TYPE] TYPE NAME / end_header
+//   ply / format ascii|binary_little_endian|binary_big_endian 1.0 / element NAME COUNT / property
+//   [list COUNT_TYPE] TYPE NAME / end_header
 //
 // Types by both families of names (char or int8, ... double or float64); "comment" and "obj_info" lines have no effect.
 // Source: G. Turk, "The PLY Polygon File Format", 1994.
@@ -40,7 +41,8 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
-// Reads up to and with "end_header". Throws InputError. Counts are compared with what the bytes behind the header can hold.
+// Reads up to and with "end_header". Throws InputError. Counts are compared with
+// what the bytes behind the header can hold.
 PlyHeader readPlyHeader(TextLines& lines, const MeshFile& file);
 
 }  // namespace pincer::contact

@@ -24,7 +24,8 @@ class AsciiValues {
   void begin(const PlyElement& element, std::size_t number) {
     next_ = 0;
     if (!lines_.next())
-      lines_.fail(fmt::format("entry {} of {} {} is missing. {}", number, element.count, inQuotes(element.name), kCutOff));
+      lines_.fail(
+          fmt::format("entry {} of {} {} is missing. {}", number, element.count, inQuotes(element.name), kCutOff));
   }
   double scalar(const PlyProperty& p) { return lines_.number(word(p), p.name); }
   std::int64_t index(const PlyProperty& p) { return lines_.integer(word(p), p.name); }
@@ -36,12 +37,13 @@ class AsciiValues {
   void end(const PlyElement& element) const {
     const std::size_t words = lines_.words().size();
     if (next_ != words) {
-      lines_.fail(
-          fmt::format("the line has {} values, but a {} has only {} here. Export the mesh again.", words, inQuotes(element.name), next_));
+      lines_.fail(fmt::format("the line has {} values, but a {} has only {} here. Export the mesh again.", words,
+                              inQuotes(element.name), next_));
     }
   }
   void requireEnd() const {
-    if (lines_.next()) lines_.fail(fmt::format("{} follows after the last entry. {}", inQuotes(lines_.words()[0]), kCutOffOrJoined));
+    if (lines_.next())
+      lines_.fail(fmt::format("{} follows after the last entry. {}", inQuotes(lines_.words()[0]), kCutOffOrJoined));
   }
 
  private:
@@ -50,8 +52,8 @@ class AsciiValues {
     return lines_.words()[next_++];
   }
   [[noreturn]] void fail(const PlyProperty& p) const {
-    lines_.fail(
-        fmt::format("the line has {} values, which aren't enough for {}. {}", lines_.words().size(), inQuotes(p.name), kCutOffOrJoined));
+    lines_.fail(fmt::format("the line has {} values, which aren't enough for {}. {}", lines_.words().size(),
+                            inQuotes(p.name), kCutOffOrJoined));
   }
 
   TextLines& lines_;
@@ -61,7 +63,9 @@ class AsciiValues {
 class BinaryValues {
  public:
   BinaryValues(MeshFile& file, const TextLines& lines, PlyEncoding encoding)
-      : file_(file), at_(lines.position()), order_(encoding == PlyEncoding::little_endian ? ByteOrder::little : ByteOrder::big) {
+      : file_(file),
+        at_(lines.position()),
+        order_(encoding == PlyEncoding::little_endian ? ByteOrder::little : ByteOrder::big) {
     file.countPlacesIn(Places::bytes);
   }
 
@@ -73,9 +77,9 @@ class BinaryValues {
                          : p.type == PlyType::float32 ? static_cast<double>(readNumber<float>(bytes, order_))
                                                       : static_cast<double>(integer(bytes, p.type));
     if (!std::isfinite(value)) {
-      file_.failAt(
-          place() - static_cast<std::int32_t>(bytes.size()),
-          fmt::format("{} = {} must be finite. Export the mesh again; its program had no valid value here.", printable(p.name), value));
+      file_.failAt(place() - static_cast<std::int32_t>(bytes.size()),
+                   fmt::format("{} = {} must be finite. Export the mesh again; its program had no valid value here.",
+                               printable(p.name), value));
     }
     return value;
   }
@@ -88,7 +92,8 @@ class BinaryValues {
   void end(const PlyElement&) const {}
   void requireEnd() const {
     if (at_ == file_.bytes().size()) return;
-    file_.failAt(place(), fmt::format("{} bytes follow after the last entry. {}", file_.bytes().size() - at_, kCutOffOrJoined));
+    file_.failAt(place(),
+                 fmt::format("{} bytes follow after the last entry. {}", file_.bytes().size() - at_, kCutOffOrJoined));
   }
 
  private:
@@ -140,12 +145,14 @@ VertexLayout layoutOf(const PlyElement& element, const MeshFile& file) {
   }
   for (std::size_t i = 0; i < 3; ++i) {
     if (!found[i])
-      file.failAt(element.line,
-                  fmt::format("element \"vertex\" has no property \"{}\". Export the mesh with vertex positions.", kNames[i]));
+      file.failAt(
+          element.line,
+          fmt::format("element \"vertex\" has no property \"{}\". Export the mesh with vertex positions.", kNames[i]));
   }
   layout.has_normals = found[3] && found[4] && found[5];
   if (!layout.has_normals && (found[3] || found[4] || found[5])) {
-    file.failAt(element.line, "element \"vertex\" has only some of nx, ny and nz. Export the normals whole, or not at all.");
+    file.failAt(element.line,
+                "element \"vertex\" has only some of nx, ny and nz. Export the normals whole, or not at all.");
   }
   if (!layout.has_normals)
     std::replace_if(
@@ -159,11 +166,13 @@ std::size_t vertexListOf(const PlyElement& element, const MeshFile& file) {
     const PlyProperty& p = element.properties[i];
     if (p.name != "vertex_indices" && p.name != "vertex_index") continue;
     if (!p.is_list || !isInteger(p.type)) {
-      file.failAt(element.line, fmt::format("property \"{}\" must be a list of whole numbers. Export the mesh again.", p.name));
+      file.failAt(element.line,
+                  fmt::format("property \"{}\" must be a list of whole numbers. Export the mesh again.", p.name));
     }
     return i;
   }
-  file.failAt(element.line, fmt::format("element \"{}\" has no list \"vertex_indices\". Export the mesh as polygons.", element.name));
+  file.failAt(element.line,
+              fmt::format("element \"{}\" has no list \"vertex_indices\". Export the mesh as polygons.", element.name));
 }
 
 template <typename Values>
@@ -201,7 +210,8 @@ class PlyParser {
       std::array<double, 6> value{};
       for (std::size_t k = 0; k < element.properties.size(); ++k) {
         const int role = layout_.role[k];
-        role < 0 ? skip(element.properties[k]) : void(value[static_cast<std::size_t>(role)] = values_.scalar(element.properties[k]));
+        role < 0 ? skip(element.properties[k])
+                 : void(value[static_cast<std::size_t>(role)] = values_.scalar(element.properties[k]));
       }
       values_.end(element);
       builder_.addVertex({value[0], value[1], value[2]}, place);
@@ -232,8 +242,8 @@ class PlyParser {
     }
   }
 
-  // Each vertex makes a triangle with the two before it, every second one turned round. -1 ends a strip; another begins in the same list.
-  // Strips are joined by triangles that name a vertex twice: these aren't part of the surface.
+  // Each vertex makes a triangle with the two before it, every second one turned round. -1 ends a strip; another begins
+  // in the same list. Strips are joined by triangles that name a vertex twice: these aren't part of the surface.
   void readStrip(const PlyProperty& p) {
     constexpr std::int64_t kEnd = -1;
     const std::int32_t place = values_.place();
@@ -281,7 +291,8 @@ class PlyParser {
 
   void requireNotNegative(std::int64_t items, const PlyProperty& p, std::int32_t place) const {
     if (items >= 0) return;
-    file_.failAt(place, fmt::format("list {} has the count {}, which can't be negative. Export the mesh again.", inQuotes(p.name), items));
+    file_.failAt(place, fmt::format("list {} has the count {}, which can't be negative. Export the mesh again.",
+                                    inQuotes(p.name), items));
   }
 
   MeshFile& file_;

@@ -8,12 +8,14 @@ namespace pincer::contact {
 
 namespace {
 
-// Height of a triangle over its longest edge, relative to that edge, below which it counts as flat: some thousand units of round-off.
+// Height of a triangle over its longest edge, relative to that edge, below which it counts
+// as flat: some thousand units of round-off.
 constexpr double kFlat = 1e-12;
 
 Vec3 newellNormal(const std::vector<Vec3>& polygon) {
   Vec3 n = Vec3::Zero();
-  for (std::size_t i = 1; i + 1 < polygon.size(); ++i) n += (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]);
+  for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+    n += (polygon[i] - polygon[0]).cross(polygon[i + 1] - polygon[0]);
   return n;
 }
 
@@ -50,11 +52,13 @@ bool isStrictlyConvex(const std::vector<Vec2>& p) {
   return turn < 7;  // 2 pi, or at least 4 pi
 }
 
-// Cuts off one ear after the other. Whether a corner is an ear changes when a neighbour is cut off; others are looked at again only when no
-// ear is left (corners that touch may have hidden one), and at most kRounds times: n^2 steps in all.
+// Cuts off one ear after the other. Whether a corner is an ear changes when a neighbour is cut off;
+// others are looked at again only when no ear is left (corners that touch may have hidden one), and
+// at most kRounds times: n^2 steps in all.
 class EarClipper {
  public:
-  explicit EarClipper(const std::vector<Vec2>& p) : p_(p), next_(p.size()), previous_(p.size()), ear_(p.size()), left_(size()) {
+  explicit EarClipper(const std::vector<Vec2>& p)
+      : p_(p), next_(p.size()), previous_(p.size()), ear_(p.size()), left_(size()) {
     for (int i = 0; i < size(); ++i) {
       next_[i] = (i + 1) % size();
       previous_[i] = (i + size() - 1) % size();

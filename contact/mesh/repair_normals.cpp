@@ -10,7 +10,9 @@ namespace pincer::contact {
 
 namespace {
 
-bool opposes(const std::vector<bool>& corners, std::size_t t) { return corners[3 * t] || corners[3 * t + 1] || corners[3 * t + 2]; }
+bool opposes(const std::vector<bool>& corners, std::size_t t) {
+  return corners[3 * t] || corners[3 * t + 1] || corners[3 * t + 2];
+}
 
 }  // namespace
 

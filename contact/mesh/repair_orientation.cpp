@@ -12,11 +12,12 @@ namespace pincer::contact {
 
 namespace {
 
-// Which triangles must be flipped so that neighbours agree: of two ways per piece the one with fewer flips. Edges where the surface branches
-// don't count as neighbourhood. A piece with one side only (a Moebius strip) is left as it is.
+// Which triangles must be flipped so that neighbours agree: of two ways per piece the one with fewer flips. Edges where
+// the surface branches don't count as neighbourhood. A piece with one side only (a Moebius strip) is left as it is.
 class Orientation {
  public:
-  explicit Orientation(const TriangleMesh& mesh) : across_(3 * mesh.triangles.size()), flip_(mesh.triangles.size()), seen_(flip_.size()) {
+  explicit Orientation(const TriangleMesh& mesh)
+      : across_(3 * mesh.triangles.size()), flip_(mesh.triangles.size()), seen_(flip_.size()) {
     forEachEdge(sortedHalfEdges(mesh.triangles), [&](auto edge) {
       if (edge.size() != 2) return;
       link(edge[0], edge[1].triangle, isReversed(edge));
@@ -81,9 +82,9 @@ MaybeChange flipMarked(TriangleMesh& mesh, const std::vector<bool>& flip, const 
   }
   if (flipped.count == 0) return {};
   flipTriangles(mesh, flip);
-  return MeshChange{
-      name, flipped.count,
-      fmt::format("flipped {} {}; the first is {}", counted(flipped.count, "triangle"), what, trianglePlace(mesh, flipped.first))};
+  return MeshChange{name, flipped.count,
+                    fmt::format("flipped {} {}; the first is {}", counted(flipped.count, "triangle"), what,
+                                trianglePlace(mesh, flipped.first))};
 }
 
 }  // namespace
@@ -107,7 +108,8 @@ void flipTriangles(TriangleMesh& mesh, const std::vector<bool>& flip) {
 }
 
 MaybeChange orientConsistently(TriangleMesh& mesh) {
-  return flipMarked(mesh, Orientation(mesh).find(), "flipped-triangles", "that faced another way than their neighbours");
+  return flipMarked(mesh, Orientation(mesh).find(), "flipped-triangles",
+                    "that faced another way than their neighbours");
 }
 
 MaybeChange turnOutwards(TriangleMesh& mesh) {

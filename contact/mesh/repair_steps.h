@@ -1,4 +1,5 @@
-// repair_steps: the steps of mesh_repair, each on its own. A step that finds nothing to do leaves the mesh as it is and returns nothing.
+// repair_steps: the steps of mesh_repair, each on its own. A step that finds nothing to do
+// leaves the mesh as it is and returns nothing.
 #pragma once
 #include <optional>
 #include <vector>

@@ -17,8 +17,9 @@ using Triangle = std::array<std::int32_t, 3>;
 
 const HalfEdge* firstBetween(const std::vector<HalfEdge>& half_edges, std::int32_t a, std::int32_t b) {
   const auto [low, high] = std::minmax(a, b);
-  const auto it = std::lower_bound(half_edges.begin(), half_edges.end(), std::make_tuple(low, high),
-                                   [](const HalfEdge& h, const auto& key) { return std::make_tuple(h.low, h.high) < key; });
+  const auto it =
+      std::lower_bound(half_edges.begin(), half_edges.end(), std::make_tuple(low, high),
+                       [](const HalfEdge& h, const auto& key) { return std::make_tuple(h.low, h.high) < key; });
   return it != half_edges.end() && it->low == low && it->high == high ? &*it : nullptr;
 }
 
@@ -33,9 +34,10 @@ bool faceSameWay(const Triangle& a, const Triangle& b) {
   return b[(at + 1) % 3] == a[1];
 }
 
-// How many of `equal` triangles belong to the surface: one if it would have a hole without (an odd number of others at its edges), or if
-// they are all the same sheet; none if they are the two sides of a sheet inside or on its own.
-bool oneBelongs(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges, const std::vector<std::int32_t>& equal) {
+// How many of `equal` triangles belong to the surface: one if it would have a hole without (an odd number of others at
+// its edges), or if they are all the same sheet; none if they are the two sides of a sheet inside or on its own.
+bool oneBelongs(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges,
+                const std::vector<std::int32_t>& equal) {
   const Triangle& t = mesh.triangles[static_cast<std::size_t>(equal[0])];
   int odd = 0, alone = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -94,7 +96,8 @@ class FlatTriangles {
 
   void turn(std::size_t t) {
     const std::size_t i = longestSide(mesh_.triangles[t]);
-    const std::int32_t u = mesh_.triangles[t][i], v = mesh_.triangles[t][(i + 1) % 3], m = mesh_.triangles[t][(i + 2) % 3];
+    const std::int32_t u = mesh_.triangles[t][i], v = mesh_.triangles[t][(i + 1) % 3],
+                       m = mesh_.triangles[t][(i + 2) % 3];
     const auto edge = edgeBetween(half_edges_, u, v);
     if (isBoundary(edge)) return drop(t);
     if (!isRegular(edge)) return;
@@ -112,8 +115,8 @@ class FlatTriangles {
     setTriangles(t, i, s, j);
   }
 
-  // (u, v, m) and (v, u, d) become (u, d, m) and (d, v, m). Normals of the file at u, v and d, and its smoothing group, are the
-  // whole neighbour's.
+  // (u, v, m) and (v, u, d) become (u, d, m) and (d, v, m). Normals of the file at u, v and d, and its
+  // smoothing group, are the whole neighbour's.
   void setTriangles(std::size_t t, std::size_t i, std::size_t s, std::size_t j) {
     const auto turned = [&](std::vector<Triangle>& list) {
       const std::int32_t v = list[s][j], u = list[s][(j + 1) % 3], d = list[s][(j + 2) % 3], m = list[t][(i + 2) % 3];
@@ -163,7 +166,8 @@ MaybeChange dropPointlessTriangles(TriangleMesh& mesh) {
   const std::string first = trianglePlace(mesh, pointless.first);
   dropTriangles(mesh, drop);
   return MeshChange{"dropped-degenerate-triangles", pointless.count,
-                    fmt::format("dropped {} two of whose corners are one; the first was {}", counted(pointless.count, "triangle"), first)};
+                    fmt::format("dropped {} two of whose corners are one; the first was {}",
+                                counted(pointless.count, "triangle"), first)};
 }
 
 MaybeChange dropDuplicateTriangles(TriangleMesh& mesh) {
@@ -179,16 +183,17 @@ MaybeChange dropDuplicateTriangles(TriangleMesh& mesh) {
   if (duplicates.count == 0) return {};
   const std::string first = trianglePlace(mesh, duplicates.first);
   dropTriangles(mesh, drop);
-  return MeshChange{"dropped-duplicate-faces", duplicates.count,
-                    fmt::format("dropped {} on top of others; the first was {}", counted(duplicates.count, "triangle"), first)};
+  return MeshChange{
+      "dropped-duplicate-faces", duplicates.count,
+      fmt::format("dropped {} on top of others; the first was {}", counted(duplicates.count, "triangle"), first)};
 }
 
 MaybeChange turnFlatTriangles(TriangleMesh& mesh) {
   const Occurrences<std::string> removed = FlatTriangles(mesh).remove();
   if (removed.count == 0) return {};
-  return MeshChange{
-      "removed-flat-triangles", removed.count,
-      fmt::format("removed {} without area, without a gap; the first was {}", counted(removed.count, "triangle"), removed.first)};
+  return MeshChange{"removed-flat-triangles", removed.count,
+                    fmt::format("removed {} without area, without a gap; the first was {}",
+                                counted(removed.count, "triangle"), removed.first)};
 }
 
 }  // namespace pincer::contact

@@ -19,7 +19,8 @@ namespace {
 std::vector<bool> weldCandidates(const TriangleMesh& mesh) {
   std::vector<bool> candidate(mesh.vertices.size());
   forEachEdge(sortedHalfEdges(mesh.triangles), [&](auto edge) {
-    if (isBoundary(edge)) candidate[static_cast<std::size_t>(edge[0].low)] = candidate[static_cast<std::size_t>(edge[0].high)] = true;
+    if (isBoundary(edge))
+      candidate[static_cast<std::size_t>(edge[0].low)] = candidate[static_cast<std::size_t>(edge[0].high)] = true;
   });
   for (const auto& t : mesh.triangles) {
     const auto p = [&](std::size_t i) -> const Vec3& { return mesh.vertices[static_cast<std::size_t>(t[i])]; };
@@ -30,7 +31,8 @@ std::vector<bool> weldCandidates(const TriangleMesh& mesh) {
 }
 
 // For each vertex the earlier one that it becomes: the nearest within `distance` among those that stay.
-std::vector<std::int32_t> nearestEarlier(const TriangleMesh& mesh, const std::vector<bool>& candidate, double distance) {
+std::vector<std::int32_t> nearestEarlier(const TriangleMesh& mesh, const std::vector<bool>& candidate,
+                                         double distance) {
   using Cell = std::array<std::int64_t, 3>;
   const auto cellOf = [&](const Vec3& p, const Cell& step) {
     Cell cell{};
@@ -52,7 +54,8 @@ std::vector<std::int32_t> nearestEarlier(const TriangleMesh& mesh, const std::ve
       if (cell == staying.end()) continue;
       for (const std::int32_t other : cell->second) {
         const double apart = (mesh.vertices[static_cast<std::size_t>(other)] - mesh.vertices[v]).norm();
-        const bool nearer = apart < nearest || (apart == nearest && (target[v] == static_cast<std::int32_t>(v) || other < target[v]));
+        const bool nearer =
+            apart < nearest || (apart == nearest && (target[v] == static_cast<std::int32_t>(v) || other < target[v]));
         if (!nearer) continue;
         nearest = apart;
         target[v] = other;
@@ -63,8 +66,8 @@ std::vector<std::int32_t> nearestEarlier(const TriangleMesh& mesh, const std::ve
   return target;
 }
 
-// Triangles in the order of their direction around an edge: half-edges that run backwards begin a wedge of the solid, the next ones forwards
-// end it. Each such pair stays together.
+// Triangles in the order of their direction around an edge: half-edges that run backwards begin a wedge of the solid,
+// the next ones forwards end it. Each such pair stays together.
 void joinWedges(const TriangleMesh& mesh, std::span<const HalfEdge> edge, UnionFind& fans) {
   const Vec3& p = mesh.vertices[static_cast<std::size_t>(edge[0].low)];
   const Mat3 R = frameFromNormal((mesh.vertices[static_cast<std::size_t>(edge[0].high)] - p).normalized());
@@ -74,7 +77,8 @@ void joinWedges(const TriangleMesh& mesh, std::span<const HalfEdge> edge, UnionF
   };
   std::vector<Blade> blades;
   for (const HalfEdge& h : edge) {
-    const std::int32_t top = mesh.triangles[static_cast<std::size_t>(h.triangle)][static_cast<std::size_t>((h.side + 2) % 3)];
+    const std::int32_t top =
+        mesh.triangles[static_cast<std::size_t>(h.triangle)][static_cast<std::size_t>((h.side + 2) % 3)];
     const Vec3 o = mesh.vertices[static_cast<std::size_t>(top)] - p;
     blades.push_back({math::atan2(R.col(1).dot(o), R.col(0).dot(o)), h});
   }
@@ -89,7 +93,8 @@ void joinWedges(const TriangleMesh& mesh, std::span<const HalfEdge> edge, UnionF
 
 MaybeChange weldVertices(TriangleMesh& mesh, double distance) {
   const std::vector<bool> candidate = weldCandidates(mesh);
-  const std::vector<std::int32_t> target = distance > 0 ? nearestEarlier(mesh, candidate, distance) : firstAtSamePlace(mesh, candidate);
+  const std::vector<std::int32_t> target =
+      distance > 0 ? nearestEarlier(mesh, candidate, distance) : firstAtSamePlace(mesh, candidate);
   Occurrences<std::int32_t> welded;
   for (std::size_t v = 0; v < target.size(); ++v) {
     if (target[v] != static_cast<std::int32_t>(v)) welded.add(static_cast<std::int32_t>(v));
@@ -100,13 +105,14 @@ MaybeChange weldVertices(TriangleMesh& mesh, double distance) {
   }
   const std::string near = distance > 0 ? fmt::format("within {:.4g} mm", 1e3 * distance) : "at the same place";
   return MeshChange{"welded-vertices", welded.count,
-                    fmt::format("welded {} onto earlier ones {}; the first is {}", counted(welded.count, "vertex"), near,
-                                vertexPlace(mesh, welded.first))};
+                    fmt::format("welded {} onto earlier ones {}; the first is {}", counted(welded.count, "vertex"),
+                                near, vertexPlace(mesh, welded.first))};
 }
 
 MaybeChange cutApart(TriangleMesh& mesh) {
   UnionFind fans(3 * mesh.triangles.size());
-  forEachEdge(sortedHalfEdges(mesh.triangles), [&](auto edge) { isBranching(edge) ? joinWedges(mesh, edge, fans) : joinFans(edge, fans); });
+  forEachEdge(sortedHalfEdges(mesh.triangles),
+              [&](auto edge) { isBranching(edge) ? joinWedges(mesh, edge, fans) : joinFans(edge, fans); });
   std::vector<std::int32_t> fan_of(mesh.vertices.size(), -1);
   std::map<std::int32_t, std::int32_t> copy_for;  // fan -> new vertex
   Occurrences<std::int32_t> split;
@@ -124,9 +130,11 @@ MaybeChange cutApart(TriangleMesh& mesh) {
     v = it->second;
   }
   if (split.count == 0) return {};
-  return MeshChange{"split-vertices", split.count,
-                    fmt::format("cut the surface apart where it branched or touched itself, with {} new vertices; the first doubles {}",
-                                split.count, vertexPlace(mesh, split.first))};
+  return MeshChange{
+      "split-vertices", split.count,
+      fmt::format(
+          "cut the surface apart where it branched or touched itself, with {} new vertices; the first doubles {}",
+          split.count, vertexPlace(mesh, split.first))};
 }
 
 MaybeChange dropUnusedVertices(TriangleMesh& mesh) {
@@ -144,7 +152,8 @@ MaybeChange dropUnusedVertices(TriangleMesh& mesh) {
   for (auto& t : mesh.triangles) {
     for (std::int32_t& v : t) v = place[static_cast<std::size_t>(v)];
   }
-  return MeshChange{"dropped-vertices", unused, fmt::format("dropped {} that no triangle uses", counted(unused, "vertex"))};
+  return MeshChange{"dropped-vertices", unused,
+                    fmt::format("dropped {} that no triangle uses", counted(unused, "vertex"))};
 }
 
 }  // namespace pincer::contact

@@ -68,7 +68,9 @@ class EdgeRounder {
     return static_cast<std::size_t>(std::max(1.0, segments));
   }
   const Vec3& vertex(std::int32_t v) const { return mesh_.vertices[static_cast<std::size_t>(v)]; }
-  const Vec3& normal(Fan fan) const { return corners_.normals[static_cast<std::size_t>(fan) / 3][static_cast<std::size_t>(fan) % 3]; }
+  const Vec3& normal(Fan fan) const {
+    return corners_.normals[static_cast<std::size_t>(fan) / 3][static_cast<std::size_t>(fan) % 3];
+  }
   const EdgeBall& ballAt(std::int32_t v) const { return balls_.at_vertex[static_cast<std::size_t>(v)]; }
 
   void findTips() {
@@ -96,7 +98,8 @@ class EdgeRounder {
       if (ball.vanishes && twinPoint(ball, fan) >= 0) {
         fan_point_[c] = twinPoint(ball, fan);
       } else {
-        fan_point_[c] = moving_.add({vertex(v), stays ? Vec3::Zero() : Vec3(ball.s * (normal(fan) - ball.x)), normal(fan)});
+        fan_point_[c] =
+            moving_.add({vertex(v), stays ? Vec3::Zero() : Vec3(ball.s * (normal(fan) - ball.x)), normal(fan)});
       }
     }
   }
@@ -104,7 +107,9 @@ class EdgeRounder {
     const Fan twin = ball.creases[0].left == fan ? ball.creases[0].right : ball.creases[0].left;
     return fan_point_[static_cast<std::size_t>(twin)];
   }
-  std::int32_t pointOf(std::size_t t, std::size_t i) const { return fan_point_[static_cast<std::size_t>(balls_.fan_of[3 * t + i % 3])]; }
+  std::int32_t pointOf(std::size_t t, std::size_t i) const {
+    return fan_point_[static_cast<std::size_t>(balls_.fan_of[3 * t + i % 3])];
+  }
 
   void addFace(std::size_t t) {
     const auto& v = mesh_.triangles[t];
@@ -129,9 +134,9 @@ class EdgeRounder {
   }
 
   [[noreturn]] void refuseTwins(const std::array<std::int32_t, 3>& v) const {
-    throw InputError(
-        fmt::format("{}: the tips of two cones share the triangle at {}: there is no room to round them. Refine the mesh there.",
-                    mesh_.source, vertexPlace(mesh_, v[0])));
+    throw InputError(fmt::format(
+        "{}: the tips of two cones share the triangle at {}: there is no room to round them. Refine the mesh there.",
+        mesh_.source, vertexPlace(mesh_, v[0])));
   }
 
   // From the ruling's touching point over the ball to the pole, which all meridians share.
@@ -198,7 +203,8 @@ class EdgeRounder {
     const std::int32_t to = mesh_.triangles[t][(i + 1) % 3];
     const auto j = static_cast<std::size_t>(neighbours_[t][i].edge);
     const Chain near = arc(static_cast<std::int32_t>(v), crease.left, crease.right);
-    const Chain far = arc(to, balls_.fan_of[3 * t + (i + 1) % 3], balls_.fan_of[3 * static_cast<std::size_t>(other) + j]);
+    const Chain far =
+        arc(to, balls_.fan_of[3 * t + (i + 1) % 3], balls_.fan_of[3 * static_cast<std::size_t>(other) + j]);
     moving_.addSide(near.front(), far.front(), crease.triangle);
     moving_.addSide(near.back(), far.back(), other);
     for (std::size_t k = 0; k < segments_; ++k) addQuad(far[k], near[k], near[k + 1], far[k + 1]);
@@ -209,7 +215,8 @@ class EdgeRounder {
   std::vector<Fan> fansAround(const EdgeBall& ball) const {
     std::vector<Fan> fans = {ball.creases[0].right};
     while (fans.size() < ball.creases.size()) {
-      const auto next = std::find_if(ball.creases.begin(), ball.creases.end(), [&](const CreaseEnd& c) { return c.right == fans.back(); });
+      const auto next = std::find_if(ball.creases.begin(), ball.creases.end(),
+                                     [&](const CreaseEnd& c) { return c.right == fans.back(); });
       PINCER_ASSERT(next != ball.creases.end());
       fans.push_back(next->left);
     }
@@ -242,14 +249,16 @@ class EdgeRounder {
     const EdgeBall& ball = ballAt(v);
     Chain chain = {fan_point_[static_cast<std::size_t>(fan)]};
     for (std::size_t k = 1; k < segments_; ++k) {
-      const Vec3 n = onGreatCircle(normal(fan), moving_.point(pole).n, static_cast<double>(k) / static_cast<double>(segments_));
+      const Vec3 n =
+          onGreatCircle(normal(fan), moving_.point(pole).n, static_cast<double>(k) / static_cast<double>(segments_));
       chain.push_back(moving_.add({vertex(v), ball.s * (n - ball.x), n}));
     }
     chain.push_back(pole);
     return chain;
   }
 
-  // Between three arcs that run one after the other. Inner points: the mean of the three ways to divide the triangle by great circles.
+  // Between three arcs that run one after the other. Inner points: the mean of the three ways
+  // to divide the triangle by great circles.
   void addSphericalTriangle(std::int32_t v, const Chain& ab, const Chain& bc, const Chain& ca) {
     const std::size_t n = segments_;
     std::vector<Chain> rows(n + 1);  // row i: i + 1 points, from side ca to side ab; row 0 is a
@@ -271,7 +280,8 @@ class EdgeRounder {
   }
 
   // `share`: of a, b and c, in parts of `segments_`.
-  std::int32_t innerPoint(std::int32_t v, const std::array<std::size_t, 3>& share, const Chain& ab, const Chain& bc, const Chain& ca) {
+  std::int32_t innerPoint(std::int32_t v, const std::array<std::size_t, 3>& share, const Chain& ab, const Chain& bc,
+                          const Chain& ca) {
     const auto n_at = [&](const Chain& chain, std::size_t k) -> const Vec3& { return moving_.point(chain[k]).n; };
     const auto [a, b, c] = share;
     const auto between = [](const Vec3& from, const Vec3& to, std::size_t x, std::size_t of) {
@@ -289,10 +299,12 @@ class EdgeRounder {
     const RadiusLimit limit = moving_.limit();
     if (options_.radius <= kFullest * limit.radius) return;
     throw InputError(
-        fmt::format("{}: a rounding of {:.4g} mm doesn't fit at {}. The largest that fits is --radius {} (mm). Use that or less, or merge "
+        fmt::format("{}: a rounding of {:.4g} mm doesn't fit at {}. The largest that fits is --radius {} (mm). Use "
+                    "that or less, or merge "
                     "small faces in a "
                     "mesh editor.",
-                    mesh_.source, 1e3 * options_.radius, trianglePlace(mesh_, limit.triangle), roundedDown(1e3 * kFullest * limit.radius)));
+                    mesh_.source, 1e3 * options_.radius, trianglePlace(mesh_, limit.triangle),
+                    roundedDown(1e3 * kFullest * limit.radius)));
   }
   // To three digits.
   static std::string roundedDown(double x) {
@@ -317,8 +329,10 @@ void requireInRange(const TriangleMesh& mesh, const RoundOptions& options) {
   const auto refuse = [&](const char* what, double value, const char* range) {
     throw InputError(fmt::format("{}: {} = {} is out of range {}.", mesh.source, what, value, range));
   };
-  if (!(options.radius > 0 && std::isfinite(options.radius))) refuse("radius", options.radius, "(0, inf) m; typical: 0.0015");
-  if (!(options.crease_angle > 0 && options.crease_angle <= M_PI)) refuse("crease angle", options.crease_angle, "(0, 3.1416] rad");
+  if (!(options.radius > 0 && std::isfinite(options.radius)))
+    refuse("radius", options.radius, "(0, inf) m; typical: 0.0015");
+  if (!(options.crease_angle > 0 && options.crease_angle <= M_PI))
+    refuse("crease angle", options.crease_angle, "(0, 3.1416] rad");
   if (options.segments < 1 || options.segments > 64) refuse("segments", options.segments, "1 .. 64 per quarter turn");
 }
 

@@ -43,7 +43,8 @@ class Positions {
  private:
   std::int32_t& slotOf(const Vec3& p) {
     std::uint64_t hash = 0;
-    for (int i = 0; i < 3; ++i) hash = mixed(hash + 0x9e3779b97f4a7c15u + std::bit_cast<std::uint64_t>(p[i] + 0.0));  // -0 is 0
+    // -0 is 0
+    for (int i = 0; i < 3; ++i) hash = mixed(hash + 0x9e3779b97f4a7c15u + std::bit_cast<std::uint64_t>(p[i] + 0.0));
     for (std::size_t i = hash;; ++i) {
       std::int32_t& slot = slots_[i & (slots_.size() - 1)];
       if (slot < 0 || points_[static_cast<std::size_t>(slot)] == p) return slot;
@@ -111,12 +112,14 @@ std::size_t StlParser::readCount() const {
                     "It is cut off or isn't STL; export it again.",
                     size, kHead));
   }
-  const auto count = static_cast<std::size_t>(readNumber<std::uint32_t>(file_.bytes().substr(kHead - 4), ByteOrder::little));
+  const auto count =
+      static_cast<std::size_t>(readNumber<std::uint32_t>(file_.bytes().substr(kHead - 4), ByteOrder::little));
   const std::size_t expected = kHead + kFacet * count;
   if (size == expected) return count;
-  file_.fail(fmt::format("the header announces {} triangles, which take {} bytes, but the file has {}. {}", count, expected, size,
-                         size < expected ? "It is cut off or isn't STL; export or copy it again."
-                                         : "Something follows after the last triangle: the file is damaged; export it again."));
+  file_.fail(fmt::format(
+      "the header announces {} triangles, which take {} bytes, but the file has {}. {}", count, expected, size,
+      size < expected ? "It is cut off or isn't STL; export or copy it again."
+                      : "Something follows after the last triangle: the file is damaged; export it again."));
 }
 
 void StlParser::readBinaryCorner(std::size_t at) {
@@ -125,10 +128,10 @@ void StlParser::readBinaryCorner(std::size_t at) {
   for (std::size_t i = 0; i < 3; ++i) {
     const auto value = readNumber<float>(file_.bytes().substr(at + 4 * i), ByteOrder::little);
     if (!std::isfinite(value)) {
-      file_.failAt(
-          static_cast<std::int32_t>(at + 4 * i),
-          fmt::format("{} of a corner of triangle {} = {} must be finite. Export the mesh again; its program had no valid value here.",
-                      kNames[i], builder_.nextFace() - 1, value));
+      file_.failAt(static_cast<std::int32_t>(at + 4 * i),
+                   fmt::format("{} of a corner of triangle {} = {} must be finite. Export the mesh again; its program "
+                               "had no valid value here.",
+                               kNames[i], builder_.nextFace() - 1, value));
     }
     p[static_cast<Eigen::Index>(i)] = value;
   }
@@ -143,7 +146,8 @@ TriangleMesh StlParser::parseAscii() {
                              inQuotes(lines.words()[0])));
     }
     for (;;) {
-      if (!lines.next()) lines.fail("the solid has no end (\"endsolid\"): the file is cut off. Export or copy it again.");
+      if (!lines.next())
+        lines.fail("the solid has no end (\"endsolid\"): the file is cut off. Export or copy it again.");
       if (isKeyword(lines.words()[0], "endsolid")) break;
       readFacet(lines);
     }
@@ -177,11 +181,13 @@ void StlParser::readAsciiCorner(TextLines& lines) {
 
 void StlParser::expect(TextLines& lines, std::initializer_list<std::string_view> keywords, std::size_t count) {
   const auto& words = lines.words();
-  const bool fits = words.size() == count && std::equal(keywords.begin(), keywords.end(), words.begin(),
-                                                        [](std::string_view k, std::string_view word) { return isKeyword(word, k); });
+  const bool fits =
+      words.size() == count && std::equal(keywords.begin(), keywords.end(), words.begin(),
+                                          [](std::string_view k, std::string_view word) { return isKeyword(word, k); });
   if (fits) return;
   lines.fail(
-      fmt::format("{} and {} more words stand where \"{}\"{} should. The file is damaged, or a facet isn't a triangle; export it again.",
+      fmt::format("{} and {} more words stand where \"{}\"{} should. The file is damaged, or a facet isn't a triangle; "
+                  "export it again.",
                   inQuotes(words[0]), words.size() - 1, fmt::join(keywords, " "),
                   count > keywords.size() ? fmt::format(" and {} numbers", count - keywords.size()) : ""));
 }

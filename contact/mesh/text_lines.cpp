@@ -12,7 +12,8 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr std::size_t kLongestLine = std::size_t{1} << 16;  // a polygon of 1000 corners with three long indices each takes half of it
+// a polygon of 1000 corners with three long indices each takes half of it
+constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 
 bool isBlank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
@@ -44,7 +45,8 @@ bool TextLines::next() {
     joined += line.size();
     if (line.find('\0') != std::string_view::npos)
       fail("the line holds a NUL byte, which is no part of a text. The file is damaged; export it again.");
-    if (joined > kLongestLine) fail(fmt::format("the line is longer than {} bytes. Is this a text file? Export it again.", kLongestLine));
+    if (joined > kLongestLine)
+      fail(fmt::format("the line is longer than {} bytes. Is this a text file? Export it again.", kLongestLine));
     if (rules_.comments) line = line.substr(0, line.find('#'));
     if (line.ends_with('\r')) line.remove_suffix(1);
     const bool continued = rules_.continued && line.ends_with('\\');
@@ -79,28 +81,34 @@ void TextLines::splitLine(std::string_view line) {
 
 void TextLines::fail(const std::string& message) const {
   const char* hint =
-      last_line_is_open_ ? " The file ends in the middle of this line, so it was probably cut off: export or copy it again." : "";
+      last_line_is_open_
+          ? " The file ends in the middle of this line, so it was probably cut off: export or copy it again."
+          : "";
   file_.failAt(line_ - lines_joined_, message + hint);
 }
 
 void TextLines::failAsNumber(std::string_view word, std::string_view what, bool out_of_range) const {
   if (out_of_range)
-    fail(fmt::format("{} = {} is beyond the range of numbers here. Export the mesh again.", printable(what), inQuotes(word)));
+    fail(fmt::format("{} = {} is beyond the range of numbers here. Export the mesh again.", printable(what),
+                     inQuotes(word)));
   if (!isAscii(word)) {
-    fail(fmt::format("{} = {} holds bytes that aren't ASCII text. The file is damaged or isn't a text file; export it again.",
-                     printable(what), inQuotes(word)));
+    fail(fmt::format(
+        "{} = {} holds bytes that aren't ASCII text. The file is damaged or isn't a text file; export it again.",
+        printable(what), inQuotes(word)));
   }
-  fail(fmt::format("{} = {} is not a number. Numbers are written like -0.25 or 3e-2, with a point.", printable(what), inQuotes(word)));
+  fail(fmt::format("{} = {} is not a number. Numbers are written like -0.25 or 3e-2, with a point.", printable(what),
+                   inQuotes(word)));
 }
 
 double TextLines::number(std::string_view word, std::string_view what) const {
   const std::string_view digits = withoutPlus(word);
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size()) failAsNumber(word, what, error == std::errc::result_out_of_range);
+  if (error != std::errc() || end != digits.data() + digits.size())
+    failAsNumber(word, what, error == std::errc::result_out_of_range);
   if (!std::isfinite(value)) {
-    fail(fmt::format("{} = {} must be finite. Export the mesh again; its program had no valid value here.", printable(what),
-                     inQuotes(word)));
+    fail(fmt::format("{} = {} must be finite. Export the mesh again; its program had no valid value here.",
+                     printable(what), inQuotes(word)));
   }
   return value;
 }

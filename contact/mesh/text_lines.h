@@ -1,7 +1,8 @@
 // text_lines: the words and numbers of a text file, line by line, and the errors that name a line.
 //
-// A line ends with LF or CRLF; words are separated by blanks and tabs; a UTF-8 byte order mark at the start is skipped. Where the format has
-// them, "#" starts a comment and a backslash at the end of a line continues it (Wavefront, "Object Files (.obj)", appendix B1 of the manual).
+// A line ends with LF or CRLF; words are separated by blanks and tabs; a UTF-8 byte order mark at the start is skipped.
+// Where the format has them, "#" starts a comment and a backslash at the end of a line continues it (Wavefront, "Object
+// Files (.obj)", appendix B1 of the manual).
 #pragma once
 #include <cstdint>
 #include <string>

@@ -20,7 +20,8 @@ std::string textOf(const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.x
 void requireFiniteVertices(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     if (mesh.vertices[i].allFinite()) continue;
-    fail(mesh, fmt::format("vertices[{}] = {} m must be finite. Correct what computes it.", i, textOf(mesh.vertices[i])));
+    fail(mesh,
+         fmt::format("vertices[{}] = {} m must be finite. Correct what computes it.", i, textOf(mesh.vertices[i])));
   }
 }
 
@@ -30,17 +31,21 @@ void requireVertexIndices(const TriangleMesh& mesh) {
     const auto& triangle = mesh.triangles[t];
     for (const std::int32_t v : triangle) {
       if (v >= 0 && v < count) continue;
-      fail(mesh, fmt::format("triangles[{}] uses vertex {}, out of range 0 .. {}. Correct the index.", t, v, count - 1));
+      fail(mesh,
+           fmt::format("triangles[{}] uses vertex {}, out of range 0 .. {}. Correct the index.", t, v, count - 1));
     }
     if (!namesAVertexTwice(triangle)) continue;
-    fail(mesh, fmt::format("triangles[{}] = ({}, {}, {}) names a vertex twice and has no area. Leave it out, or repair() the mesh.", t,
-                           triangle[0], triangle[1], triangle[2]));
+    fail(mesh,
+         fmt::format(
+             "triangles[{}] = ({}, {}, {}) names a vertex twice and has no area. Leave it out, or repair() the mesh.",
+             t, triangle[0], triangle[1], triangle[2]));
   }
 }
 
 void requireLength(const TriangleMesh& mesh, const char* name, std::size_t length) {
   if (length == 0 || length == mesh.triangles.size()) return;
-  fail(mesh, fmt::format("{} has {} entries, triangles has {}. Give one for each triangle, or none.", name, length, mesh.triangles.size()));
+  fail(mesh, fmt::format("{} has {} entries, triangles has {}. Give one for each triangle, or none.", name, length,
+                         mesh.triangles.size()));
 }
 
 void requireNormals(const TriangleMesh& mesh) {
@@ -49,7 +54,8 @@ void requireNormals(const TriangleMesh& mesh) {
     for (const std::int32_t n : mesh.triangle_normals[t]) {
       if (n >= -1 && n < count) continue;
       fail(mesh,
-           fmt::format("triangle_normals[{}] uses normal {}, out of range 0 .. {} (or -1: none). Correct the index.", t, n, count - 1));
+           fmt::format("triangle_normals[{}] uses normal {}, out of range 0 .. {} (or -1: none). Correct the index.", t,
+                       n, count - 1));
     }
   }
   for (std::size_t i = 0; i < mesh.normals.size(); ++i) {

@@ -15,10 +15,11 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kMostTurn = 0.5;      // cosine between a facet before and after: 60 degrees
-constexpr double kMostLean = 0.3;      // cosine between a facet and its corners' normals: 72 degrees
-constexpr double kSlenderest = 0.05;   // height over longest side
-constexpr double kShortFirst = 1e-12;  // weight of a move's length^4: in a plane, where all moves cost nothing, the short ones come first
+constexpr double kMostTurn = 0.5;     // cosine between a facet before and after: 60 degrees
+constexpr double kMostLean = 0.3;     // cosine between a facet and its corners' normals: 72 degrees
+constexpr double kSlenderest = 0.05;  // height over longest side
+// weight of a move's length^4: in a plane, where all moves cost nothing, the short ones come first
+constexpr double kShortFirst = 1e-12;
 
 struct KernelTraits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
@@ -45,7 +46,8 @@ std::size_t indexOf(const OpenMesh::BaseHandle& handle) { return static_cast<std
 Vec3 facetOf(const std::array<Vec3, 3>& p) { return (p[1] - p[0]).cross(p[2] - p[0]); }
 
 double slendernessOf(const std::array<Vec3, 3>& p) {
-  const double longest2 = std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
+  const double longest2 =
+      std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
   return longest2 > 0 ? facetOf(p).norm() / longest2 : 0;
 }
 
@@ -63,7 +65,8 @@ class VertexNormals {
   // The one that belongs to a facet.
   const Vec3& nearest(std::size_t vertex, const Vec3& facet) const {
     const std::vector<Vec3>& normals = at_[vertex];
-    return *std::max_element(normals.begin(), normals.end(), [&](const Vec3& a, const Vec3& b) { return a.dot(facet) < b.dot(facet); });
+    return *std::max_element(normals.begin(), normals.end(),
+                             [&](const Vec3& a, const Vec3& b) { return a.dot(facet) < b.dot(facet); });
   }
 
  private:
@@ -108,7 +111,10 @@ struct Original {
 class Sheet {
  public:
   Sheet(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals)
-      : p0_(corners[0]), e_(corners[1] - corners[0]), f_(corners[2] - corners[0]), patch_(smoothPatch(corners, normals)) {
+      : p0_(corners[0]),
+        e_(corners[1] - corners[0]),
+        f_(corners[2] - corners[0]),
+        patch_(smoothPatch(corners, normals)) {
     const double ee = e_.squaredNorm(), ef = e_.dot(f_), ff = f_.squaredNorm(), det = ee * ff - ef * ef;
     dual_e_ = (ff * e_ - ef * f_) / det;
     dual_f_ = (ee * f_ - ef * e_) / det;
@@ -132,7 +138,8 @@ class Sheet {
   Patch patch_;
 };
 
-// The one of a few sheets that a point belongs to, and its error: the worst of those that are as near, as at a common edge.
+// The one of a few sheets that a point belongs to, and its error: the worst of
+// those that are as near, as at a common edge.
 struct Home {
   std::size_t sheet = 0;
   double error = 0;
@@ -273,7 +280,8 @@ class MoveRules : public OpenMesh::Decimater::ModBaseT<Kernel> {
       const Vec3 facet = facetOf(p);
       const VertexNormals& n = original_->normals;
       outcome.faces.push_back(face);
-      outcome.sheets.emplace_back(p, std::array{n.nearest(after[0], facet), n.nearest(after[1], facet), n.nearest(after[2], facet)});
+      outcome.sheets.emplace_back(
+          p, std::array{n.nearest(after[0], facet), n.nearest(after[1], facet), n.nearest(after[2], facet)});
     }
   }
 
@@ -296,7 +304,8 @@ class MoveRules : public OpenMesh::Decimater::ModBaseT<Kernel> {
       std::vector<Gone>& list = gone_[outcome_.faces[home.sheet]];
       list.push_back({v, home.error});
       if (list.size() <= kMostGone) continue;
-      list.erase(std::min_element(list.begin(), list.end(), [](const Gone& a, const Gone& b) { return a.error < b.error; }));
+      list.erase(
+          std::min_element(list.begin(), list.end(), [](const Gone& a, const Gone& b) { return a.error < b.error; }));
     }
   }
 
@@ -335,7 +344,8 @@ class Decimation::Data {
 
   void reduceTo(int triangles) {
     while (triangles_ > triangles) {
-      const auto moves = static_cast<std::size_t>((triangles_ - triangles + 1) / 2);  // each takes two triangles, on a border one
+      // each takes two triangles, on a border one
+      const auto moves = static_cast<std::size_t>((triangles_ - triangles + 1) / 2);
       if (decimater_.decimate(moves) == 0) return;
       triangles_ = 0;
       for (const auto face : kernel_.all_faces()) triangles_ += !kernel_.status(face).deleted();

@@ -25,7 +25,8 @@ class Probes {
     std::vector<bool> seen(surface.triangles().vertices.size());
     for (std::size_t t = 0; t < surface.triangles().triangles.size(); ++t) {
       const Patch patch = surface.patch(static_cast<std::int32_t>(t));
-      const std::array<Vec3, 3> places = {patch.b300, patch.b030, patch.b003}, normals = {patch.n200, patch.n020, patch.n002};
+      const std::array<Vec3, 3> places = {patch.b300, patch.b030, patch.b003},
+                                normals = {patch.n200, patch.n020, patch.n002};
       for (std::size_t i = 0; i < 3; ++i) {
         const auto v = static_cast<std::size_t>(surface.triangles().triangles[t][i]);
         if (seen[v]) continue;
@@ -77,19 +78,22 @@ class Probes {
 
 void requireInRange(const TriangleMesh& mesh, const SimplifyOptions& options) {
   if (options.triangles < 0 || !(options.error >= 0 && std::isfinite(options.error))) {
-    throw InputError(fmt::format("{}: simplify to {} triangles, {} m: neither may be negative or infinite. Typical: 2000, or 2e-5 m.",
-                                 mesh.source, options.triangles, options.error));
+    throw InputError(fmt::format(
+        "{}: simplify to {} triangles, {} m: neither may be negative or infinite. Typical: 2000, or 2e-5 m.",
+        mesh.source, options.triangles, options.error));
   }
   if (options.triangles == 0 && options.error == 0) {
     throw InputError(
-        fmt::format("{}: simplify to what? Give a number of triangles (2000), or the error that is allowed (2e-5 m).", mesh.source));
+        fmt::format("{}: simplify to what? Give a number of triangles (2000), or the error that is allowed (2e-5 m).",
+                    mesh.source));
   }
 }
 
 double greatestDimension(const TriangleMesh& mesh) {
   const MeshReport report = inspect(mesh);
   const double size = (report.box_max - report.box_min).maxCoeff();
-  if (!(size > 0)) throw InputError(fmt::format("{}: all its points coincide: it has no size. Export it again.", mesh.source));
+  if (!(size > 0))
+    throw InputError(fmt::format("{}: all its points coincide: it has no size. Export it again.", mesh.source));
   return size;
 }
 
@@ -99,7 +103,8 @@ SimplifiedMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options
   requireInRange(mesh, options);
   const SurfaceOptions as_given{.crease_angle = options.crease_angle, .use_file_normals = options.use_file_normals};
   const Probes probes(*SmoothMesh::build(mesh, as_given), greatestDimension(mesh) / 2);
-  Decimation decimation(mesh, options.crease_angle, options.use_file_normals, options.error > 0 ? options.error : kInfinity);
+  Decimation decimation(mesh, options.crease_angle, options.use_file_normals,
+                        options.error > 0 ? options.error : kInfinity);
   decimation.reduceTo(options.triangles);
   SimplifiedMesh result;
   result.mesh = decimation.mesh();

@@ -65,8 +65,9 @@ class Subdivision {
 
 TriangleMesh subdivide(const TriangleMesh& mesh, double crease_angle, bool use_file_normals) {
   if (4 * mesh.triangles.size() > kMaxTriangles) {
-    throw InputError(fmt::format("{}: subdivided it would have {} triangles; the limit is {}. A finger doesn't feel finer ones.",
-                                 mesh.source, 4 * mesh.triangles.size(), kMaxTriangles));
+    throw InputError(
+        fmt::format("{}: subdivided it would have {} triangles; the limit is {}. A finger doesn't feel finer ones.",
+                    mesh.source, 4 * mesh.triangles.size(), kMaxTriangles));
   }
   const auto surface = SmoothMesh::build(mesh, {.crease_angle = crease_angle, .use_file_normals = use_file_normals});
   return Subdivision(mesh, *surface).run();

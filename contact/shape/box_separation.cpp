@@ -30,7 +30,8 @@ Separation separateBoxes(const PosedSolid& a, const PosedSolid& b) {
       const double sine2 = C(i1, j) * C(i1, j) + C(i2, j) * C(i2, j);
       if (!(sine2 > kParallelEdges * kParallelEdges)) continue;
       const double along = C(i1, j) * d_a[i2] - C(i2, j) * d_a[i1];  // (a_i x b_j) . d
-      const double reach = half_a[i1] * absC(i2, j) + half_a[i2] * absC(i1, j) + half_b[j1] * absC(i, j2) + half_b[j2] * absC(i, j1);
+      const double reach =
+          half_a[i1] * absC(i2, j) + half_a[i2] * absC(i1, j) + half_b[j1] * absC(i, j2) + half_b[j2] * absC(i, j1);
       const double sine = std::sqrt(sine2);
       const double gap = (std::abs(along) - reach) / sine;
       if (gap > best.gap + tolerance) offer(a.R.col(i).cross(b.R.col(j)).normalized(), along, gap);

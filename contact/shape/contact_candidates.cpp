@@ -102,7 +102,8 @@ FoundPoints ContactCandidates::keepBest() {
     out.points[static_cast<std::size_t>(out.count++)] = at(i);
   };
   const auto comesFirst = [&](int i, int j) {  // deeper, or as deep with the smaller feature
-    return j < 0 || at(i).phi < at(j).phi - kSameGap || (at(i).phi < at(j).phi + kSameGap && at(i).feature < at(j).feature);
+    return j < 0 || at(i).phi < at(j).phi - kSameGap ||
+           (at(i).phi < at(j).phi + kSameGap && at(i).feature < at(j).feature);
   };
   while (group_count < kMaxPairPoints) {
     int leader = -1;
@@ -125,7 +126,8 @@ FoundPoints ContactCandidates::keepBest() {
       if (group_of[static_cast<std::size_t>(i)] != g) continue;
       const double d = group.outside(at(i).p_W);
       const double score = d > kSameGap ? d * d / (kSameGap + std::max(0.0, at(i).phi - group.kept[0]->phi)) : 0;
-      const bool wins = score > kBetter * best || (next >= 0 && score * kBetter > best && at(i).feature < at(next).feature);
+      const bool wins =
+          score > kBetter * best || (next >= 0 && score * kBetter > best && at(i).feature < at(next).feature);
       if (score > 0 && wins) best = score, next = i;
     }
     return next;

@@ -1,4 +1,5 @@
-// contact_candidates: points where two bodies may touch, collected from many places, of which a few are kept (rule: mesh_pairs.h).
+// contact_candidates: points where two bodies may touch, collected from many places, of
+// which a few are kept (rule: mesh_pairs.h).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -25,10 +26,12 @@ class ContactCandidates {
  public:
   static constexpr int kMost = 256;
 
-  // Of equal features the one with the smaller gap or depth stays: the nearest surface is the one that a point may touch; when all places are taken the shallowest makes room.
+  // Of equal features the one with the smaller gap or depth stays: the nearest surface is the one that a point may
+  // touch; when all places are taken the shallowest makes room.
   void add(const FoundPoint& point);
-  // A point of one body that is in the other, whose own way out `phi` < 0 is refused because another is much shorter. Where nothing else overlaps,
-  // the shallowest of these counts: the shorter ways are closed to what surrounds the point.
+  // A point of one body that is in the other, whose own way out `phi` < 0 is refused because
+  // another is much shorter. Where nothing else overlaps, the shallowest of these counts: the
+  // shorter ways are closed to what surrounds the point.
   void addRefused(const FoundPoint& point) {
     if (point.phi > refused_.phi) refused_ = point;
   }

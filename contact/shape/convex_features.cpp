@@ -10,8 +10,8 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kStanding = 1e-6;                                        // [rad], see the header
-constexpr double kInset = 0.05;                                           // of the least half width: how far insetOf moves the faces
+constexpr double kStanding = 1e-6;  // [rad], see the header
+constexpr double kInset = 0.05;     // of the least half width: how far insetOf moves the faces
 constexpr double kCos = 0.92387953251128674, kSin = 0.38268343236508977;  // of 2 pi / kRimCorners
 
 Vec2 unitOr(const Vec2& v, const Vec2& otherwise) {
@@ -27,7 +27,9 @@ Vec2 onDisc(double r, const Vec2& d) {
 
 Vec2 nextOnRim(const Vec2& p) { return {kCos * p.x() - kSin * p.y(), kSin * p.x() + kCos * p.y()}; }
 
-Vec3 boxSupport(const Vec3& half, const Vec3& d) { return {signOf(d.x()) * half.x(), signOf(d.y()) * half.y(), signOf(d.z()) * half.z()}; }
+Vec3 boxSupport(const Vec3& half, const Vec3& d) {
+  return {signOf(d.x()) * half.x(), signOf(d.y()) * half.y(), signOf(d.z()) * half.z()};
+}
 
 // Cores without a rim have corners only.
 template <class Solid>
@@ -101,7 +103,8 @@ void strata(const Box&, const Vec3& d, Strata& s) {
   }
 }
 
-// --- cylinders: corners of an end 32 e + k, e = 0 at +z, those of the flat k = 16 (y > 0) and 17; lines of the wall from 64 on
+// --- cylinders: corners of an end 32 e + k, e = 0 at +z, those of the flat k = 16 (y
+// > 0) and 17; lines of the wall from 64 on
 
 Vec3 cylinderSupport(double radius, double half_length, const Vec3& d) {
   const Vec2 p = onDisc(radius, d.head<2>());
@@ -128,7 +131,8 @@ void addEnd(const std::array<OutlinePoint, N>& outline, int count, double half_l
   f.n = up ? Vec3::UnitZ() : Vec3(-Vec3::UnitZ());
   for (int i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(up ? i : count - 1 - i);
-    const std::size_t edge = up ? at : at == 0 ? static_cast<std::size_t>(count) - 1 : at - 1;  // to the next in this order
+    // to the next in this order
+    const std::size_t edge = up ? at : at == 0 ? static_cast<std::size_t>(count) - 1 : at - 1;
     const OutlinePoint& o = outline[at];
     f.add({o.p.x(), o.p.y(), up ? half_length : -half_length}, base + o.name, base + outline[edge].name);
   }
@@ -156,7 +160,9 @@ void strata(const Cylinder&, const Vec3& d, Strata& s) {
 }
 Mat3 bend(const Cylinder& c, const Vec3& d) { return rimBend(c.radius, d); }
 
-double halfChord(double radius, double flat_distance) { return std::sqrt((radius - flat_distance) * (radius + flat_distance)); }
+double halfChord(double radius, double flat_distance) {
+  return std::sqrt((radius - flat_distance) * (radius + flat_distance));
+}
 
 Vec3 cutSupport(double radius, double half_length, double flat_distance, const Vec3& d) {
   Vec3 p = cylinderSupport(radius, half_length, d);
@@ -164,7 +170,9 @@ Vec3 cutSupport(double radius, double half_length, double flat_distance, const V
   return p;
 }
 
-Vec3 support(const CylinderWithFlat& c, const Vec3& d) { return cutSupport(c.radius, c.half_length, c.flat_distance, d); }
+Vec3 support(const CylinderWithFlat& c, const Vec3& d) {
+  return cutSupport(c.radius, c.half_length, c.flat_distance, d);
+}
 Vec3 inset(const CylinderWithFlat& c, const Vec3& d) {
   const double in = kInset * std::min({c.radius, c.half_length, c.flat_distance});
   return cutSupport(c.radius - in, c.half_length - in, c.flat_distance - in, d);
@@ -200,7 +208,8 @@ void cutWall(const CylinderWithFlat& c, const Vec3& d, Facet& f) {
     f.line_radius = c.radius;
     return addLine(c.radius * u, c.half_length, d, 64, f);
   }
-  if (u.x() < std::sqrt(0.5 * (1 + cosine))) return addLine({c.flat_distance, signOf(u.y()) * w}, c.half_length, d, u.y() < 0 ? 66 : 68, f);
+  if (u.x() < std::sqrt(0.5 * (1 + cosine)))
+    return addLine({c.flat_distance, signOf(u.y()) * w}, c.half_length, d, u.y() < 0 ? 66 : 68, f);
   f.n = Vec3::UnitX();
   constexpr std::array<std::array<int, 2>, 4> loop = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
   int name = 70;
@@ -232,8 +241,8 @@ Vec3 inset(const Convex& c, const Vec3& d) {
   return corners[best];
 }
 
-// The face around the extreme vertex that faces d most; but where d is across an edge, one of the two that the edge joins.
-// Of a face with very many corners every n-th is taken.
+// The face around the extreme vertex that faces d most; but where d is across an edge, one of the two that the edge
+// joins. Of a face with very many corners every n-th is taken.
 void facet(const Convex& c, const Vec3& d, Facet& f) {
   constexpr double kAcross = 1e-6;  // cosine
   const Polytope& hull = *c.hull;
@@ -280,13 +289,15 @@ void strata(const Convex& c, const Vec3& d, Strata& s) {
   for (const int e : hull.edgesAt(vertex)) {
     const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
     if (s.with_edges) s.addEdge((vertexOf(c, edge.to) - vertexOf(c, edge.from)).normalized());
-    const bool leaves = edge.from == vertex;  // each face around the vertex once: the left one of the edges that leave it
+    // each face around the vertex once: the left one of the edges that leave it
+    const bool leaves = edge.from == vertex;
     s.addNormal(hull.faces()[static_cast<std::size_t>(leaves ? edge.left : edge.right)].n);
   }
 }
 
 template <class Solid>
-constexpr bool kConvex = !std::is_same_v<Solid, HalfSpace> && !std::is_same_v<Solid, Dish> && !std::is_same_v<Solid, Mesh>;
+constexpr bool kConvex =
+    !std::is_same_v<Solid, HalfSpace> && !std::is_same_v<Solid, Dish> && !std::is_same_v<Solid, Mesh>;
 
 // Calls f on the solid that `shape` is; a default result where that isn't convex.
 template <class F>
@@ -356,6 +367,8 @@ Mat3 bendOf(const Shape& shape, const Vec3& d) {
   PINCER_ASSERT(isUnitIfFinite(d));
   return onConvex(shape, [&](const auto& s) -> Mat3 { return bend(s, d); });
 }
-bool isRound(const Shape& shape) { return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<CylinderWithFlat>(shape); }
+bool isRound(const Shape& shape) {
+  return std::holds_alternative<Cylinder>(shape) || std::holds_alternative<CylinderWithFlat>(shape);
+}
 
 }  // namespace pincer::contact

@@ -1,19 +1,21 @@
 // convex_features: what the pair routines ask of a convex solid, whatever it is made of.
 //
-//   solid = core + ball of radius rounding(solid);  h(d) = max over the core of d . p, the core's support function [m for a unit d]
+//   solid = core + ball of radius rounding(solid);  h(d) = max over the core of d . p, the
+//                                                   core's support function [m for a unit d]
 //
 //   supportOf  the core's point that is furthest along d; of equally far ones always the same
-//   facetOf    the flat, straight or single part of the core's surface that faces along d and holds that point (or lies within the turn of
-//              one facet of it): a polygon, a segment (2 corners) or a point (1)
-//   strataOf   the kinks of h near d: the normals of flat faces, and the directions of straight edges (h has a kink all along the circle of
-//              directions across an edge)
+//   facetOf    the flat, straight or single part of the core's surface that faces along d and holds that point (or lies
+//              within the turn of one facet of it): a polygon, a segment (2 corners) or a point (1)
+//   strataOf   the kinks of h near d: the normals of flat faces, and the directions of straight edges (h has a kink all
+//              along the circle of directions across an edge)
 //   bendOf     the second derivative of h at the unit vector d, where h is smooth but not linear: the rims of cylinders
 //   insetOf    the same as supportOf, for a solid whose faces lie further in
 //
-// All in the solid's own frame. A round rim enters facets as kRimCorners points, the first in the direction of d: exact for tilting and
-// rolling; between them the outline runs up to 2 % of the radius inside of the circle, but for where addRimCorner adds one. A rim whose disc faces along d to within 1e-6 rad has
-// no first direction but noise: there the corners are fixed in the body, the first at +x.
-// Shapes that aren't convex (half-space, dish, mesh) have no features: isConvex is false, and the functions must not be called.
+// All in the solid's own frame. A round rim enters facets as kRimCorners points, the first in the direction of d: exact
+// for tilting and rolling; between them the outline runs up to 2 % of the radius inside of the circle, but for where
+// addRimCorner adds one. A rim whose disc faces along d to within 1e-6 rad has no first direction but noise: there the
+// corners are fixed in the body, the first at +x. Shapes that aren't convex (half-space, dish, mesh) have no features:
+// isConvex is false, and the functions must not be called.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -37,14 +39,18 @@ struct Facet {
   std::array<FacetCorner, kMost> corners;  // counter-clockwise seen from outside
   int count = 0;
   Vec3 n = Vec3::UnitZ();  // of the plane of a polygon, out of the solid; otherwise unused
-  double line_radius = 0;  // of a segment: of the round wall that it is a line of, or of the rounding about it [m]; 0: a sharp edge
-  double rim_radius = 0;   // of a polygon that stands for the end of a cylinder [m]; otherwise 0
+  // of a segment: of the round wall that it is a line of, or of the rounding about it [m]; 0: a sharp edge
+  double line_radius = 0;
+  double rim_radius = 0;  // of a polygon that stands for the end of a cylinder [m]; otherwise 0
 
   // True if the edge from corner i to the next is one of the solid's, not a chord of its rim.
-  bool isStraight(int i) const { return !(rim_radius > 0) || (corners[static_cast<std::size_t>(i)].edge & 31) == kFlatEdge; }
+  bool isStraight(int i) const {
+    return !(rim_radius > 0) || (corners[static_cast<std::size_t>(i)].edge & 31) == kFlatEdge;
+  }
   void add(const Vec3& p, int vertex, int edge) {
     if (count < kMost)
-      corners[static_cast<std::size_t>(count++)] = {p, static_cast<std::uint16_t>(vertex), static_cast<std::uint16_t>(edge)};
+      corners[static_cast<std::size_t>(count++)] = {p, static_cast<std::uint16_t>(vertex),
+                                                    static_cast<std::uint16_t>(edge)};
   }
 };
 
@@ -67,11 +73,11 @@ double roundingOf(const Shape& shape);
 Vec3 supportOf(const Shape& shape, const Vec3& d);
 Vec3 insetOf(const Shape& shape, const Vec3& d);
 void facetOf(const Shape& shape, const Vec3& d, Facet& facet);
-// To the polygon that stands for the end of a cylinder (rim_radius > 0), the rim's point in the direction of `towards`, seen from the axis
-// [m]; unless `towards` is within the polygon.
+// To the polygon that stands for the end of a cylinder (rim_radius > 0), the rim's point in the direction of `towards`,
+// seen from the axis [m]; unless `towards` is within the polygon.
 void addRimCorner(const Vec2& towards, Facet& facet);
-// How far the ray from `p` along the unit vector `d` runs until it leaves a capsule or cylinder [m]; where it misses the wall, until it is
-// nearest to the axis. Of other solids, until the plane across d through their furthest point.
+// How far the ray from `p` along the unit vector `d` runs until it leaves a capsule or cylinder [m]; where it misses
+// the wall, until it is nearest to the axis. Of other solids, until the plane across d through their furthest point.
 double reachOf(const Shape& shape, const Vec3& p, const Vec3& d);
 void strataOf(const Shape& shape, const Vec3& d, Strata& strata);
 Mat3 bendOf(const Shape& shape, const Vec3& d);

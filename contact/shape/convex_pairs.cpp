@@ -15,8 +15,8 @@ struct Segment {
 
 Segment axisOf(const Capsule& c, const PosedSolid& s) { return {s.p, c.half_length * s.R.col(2)}; }
 
-// Parameters in [-1, 1] of the nearest points of two segments. Source: C. Ericson, Real-Time Collision Detection (2005), sec. 5.1.9; parallel
-// ones: the middle of what they share, so that round-off doesn't choose an end.
+// Parameters in [-1, 1] of the nearest points of two segments. Source: C. Ericson, Real-Time Collision Detection
+// (2005), sec. 5.1.9; parallel ones: the middle of what they share, so that round-off doesn't choose an end.
 Vec2 nearestOnSegments(const Segment& a, const Segment& b) {
   constexpr double kParallel = 1e-14;  // squared sine
   const Vec3 d = b.centre - a.centre;
@@ -55,7 +55,8 @@ bool areApart(const PosedSolid& a, const PosedSolid& b, double reach) {
 // Both posed about the same origin.
 void collidePosed(const PosedSolid& A, const PosedSolid& B, double margin, const Vec3& last_n, PairPoints& out) {
   out.count = 0;
-  const double size = std::min(boundingRadius(A.shape), boundingRadius(B.shape)), reach = margin + roundingOf(A) + roundingOf(B);
+  const double size = std::min(boundingRadius(A.shape), boundingRadius(B.shape)),
+               reach = margin + roundingOf(A) + roundingOf(B);
   const auto finish = [&](const Separation& s) { return s.gap < reach && overlapFacets(A, B, s, size, margin, out); };
   if (std::holds_alternative<Capsule>(A.shape) && std::holds_alternative<Capsule>(B.shape)) {
     finish(separateCapsules(A, B));
@@ -73,24 +74,27 @@ void collidePosed(const PosedSolid& A, const PosedSolid& B, double margin, const
 
 }  // namespace
 
-void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, const Vec3& last_n_W,
-                   PairPoints& out) {
+void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
+                   const Vec3& last_n_W, PairPoints& out) {
   out.count = 0;
   PINCER_ASSERT(isConvex(a) && isConvex(b) && a.index() <= b.index());
   const double furthest = boundingRadius(a) + boundingRadius(b) + margin;
   const Vec3 p_BA = X_WA.p - X_WB.p;
   if (!(p_BA.squaredNorm() < furthest * furthest)) return;
-  collidePosed({a, X_WA.q.toRotationMatrix(), 0.5 * p_BA}, {b, X_WB.q.toRotationMatrix(), -0.5 * p_BA}, margin, last_n_W, out);
+  collidePosed({a, X_WA.q.toRotationMatrix(), 0.5 * p_BA}, {b, X_WB.q.toRotationMatrix(), -0.5 * p_BA}, margin,
+               last_n_W, out);
   for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * (X_WA.p + X_WB.p);
 }
 
-void collidePadWithConvex(const Shape& core, double rounding, const Pose& X_BF, const Shape& body, double margin, const Vec3& last_n_B,
-                          PairPoints& out) {
+void collidePadWithConvex(const Shape& core, double rounding, const Pose& X_BF, const Shape& body, double margin,
+                          const Vec3& last_n_B, PairPoints& out) {
   PINCER_ASSERT(isConvex(core) && isConvex(body) && rounding >= 0);
   // Half of the way each from the origin in between, as two bodies are: round-off is theirs alike.
-  const PosedSolid pad{core, X_BF.q.toRotationMatrix(), 0.5 * X_BF.p, rounding}, solid{body, Mat3::Identity(), -0.5 * X_BF.p};
+  const PosedSolid pad{core, X_BF.q.toRotationMatrix(), 0.5 * X_BF.p, rounding},
+      solid{body, Mat3::Identity(), -0.5 * X_BF.p};
   const double size = std::min(boundingRadius(core), boundingRadius(body));
-  if (last_n_B == Vec3::Zero() || !touchOnFaces(pad, solid, last_n_B, size, margin, out)) collidePosed(pad, solid, margin, last_n_B, out);
+  if (last_n_B == Vec3::Zero() || !touchOnFaces(pad, solid, last_n_B, size, margin, out))
+    collidePosed(pad, solid, margin, last_n_B, out);
   for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * X_BF.p;
 }
 

@@ -6,11 +6,14 @@ namespace pincer::contact {
 namespace {
 
 constexpr int kMostQueries = 24;
-constexpr double kCoreAtRest = 1e-10;   // of the finger's size: the core's deepest place moves no further
-constexpr double kShortestStep = 0.01;  // of the rounding: the surface's shading and its shape disagree about where to go on
-constexpr double kNoDeeper = 1e-10;     // [rad] of the way to a place: the surface there is level, and all of it the deepest
-constexpr double kDescent = 1e-4;       // of |way|^2 / tau, by which a step must come deeper (Armijo)
-constexpr double kLongestStep = 100;    // of the finger's size: against a plane, a step finds the support point to a hundredth
+constexpr double kCoreAtRest = 1e-10;  // of the finger's size: the core's deepest place moves no further
+// of the rounding: the surface's shading and its shape disagree about where to go on
+constexpr double kShortestStep = 0.01;
+// [rad] of the way to a place: the surface there is level, and all of it the deepest
+constexpr double kNoDeeper = 1e-10;
+constexpr double kDescent = 1e-4;  // of |way|^2 / tau, by which a step must come deeper (Armijo)
+// of the finger's size: against a plane, a step finds the support point to a hundredth
+constexpr double kLongestStep = 100;
 
 // Barzilai and Borwein's length; of the two the shorter one. A normal that doesn't turn is a plane's.
 double stepLength(const Vec3& way, const Vec3& turn, double last, double longest) {
@@ -21,8 +24,8 @@ double stepLength(const Vec3& way, const Vec3& turn, double last, double longest
 
 }  // namespace
 
-CoreDescent descend(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, CoreTracker& tracker,
-                    PatchCache& cache) {
+CoreDescent descend(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin,
+                    CoreTracker& tracker, PatchCache& cache) {
   const Mat3 R_BF = X_BF.q.toRotationMatrix();
   const double rho = roundingOf(finger), size = boundingRadiusOf(finger);
   CoreDescent out;

@@ -1,4 +1,5 @@
-// core_descent: the place of a fingertip's core that is deepest in a shape, or nearest to it; the equation and its source: finger_query.h.
+// core_descent: the place of a fingertip's core that is deepest in a shape, or nearest to it; the
+// equation and its source: finger_query.h.
 #pragma once
 #include "pincer/contact/finger_query.h"
 
@@ -11,7 +12,7 @@ struct CoreDescent {
 };
 
 // From where `tracker` was, which it moves on. Allocates nothing, always ends.
-CoreDescent descend(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, CoreTracker& tracker,
-                    PatchCache& cache);
+CoreDescent descend(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin,
+                    CoreTracker& tracker, PatchCache& cache);
 
 }  // namespace pincer::contact

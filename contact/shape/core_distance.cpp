@@ -66,7 +66,8 @@ class DifferenceSimplex {
     const Vec3 &a = at(i), &b = at(j), &c = at(k);
     const Vec3 n = (b - a).cross(c - a);
     const double area2 = n.squaredNorm();
-    const bool in_ab = n.dot((b - a).cross(-a)) > 0, in_bc = n.dot((c - b).cross(-b)) > 0, in_ca = n.dot((a - c).cross(-c)) > 0;
+    const bool in_ab = n.dot((b - a).cross(-a)) > 0, in_bc = n.dot((c - b).cross(-b)) > 0,
+               in_ca = n.dot((a - c).cross(-c)) > 0;
     if (area2 > 0 && in_ab && in_bc && in_ca) return {a.dot(n) / area2 * n, {i, j, k}, 3};
     Face best{Vec3::Constant(std::numeric_limits<double>::infinity()), {}, 0};
     if (!in_ab || !(area2 > 0)) best = nearer(best, ofSegment(i, j));
@@ -106,7 +107,8 @@ CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, 
     const double along = v.dot(w);
     if (step > 0) {
       const double length = std::sqrt(length2);
-      if (simplex.has(w) || length2 - along <= (accuracy.relative * length + accuracy.absolute) * length || along > accuracy.reach * length)
+      if (simplex.has(w) || length2 - along <= (accuracy.relative * length + accuracy.absolute) * length ||
+          along > accuracy.reach * length)
         break;
     }
     simplex.add(w);
@@ -122,10 +124,11 @@ CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, 
 
 }  // namespace
 
-CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start, double size,
-                             const CoreAccuracy& accuracy) {
+CoreDistance distanceOfCores(const PosedSolid& a, const PosedSolid& b, const Vec3& shift, const Vec3& start,
+                             double size, const CoreAccuracy& accuracy) {
   PINCER_ASSERT(size > 0 && accuracy.relative > 0);
-  return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.support(-v) + shift - b.support(v); }, start, size, accuracy);
+  return nearestToOrigin([&](const Vec3& v) -> Vec3 { return a.support(-v) + shift - b.support(v); }, start, size,
+                         accuracy);
 }
 
 CoreDistance distanceOfInsets(const PosedSolid& a, const PosedSolid& b, const Vec3& start, double size) {

@@ -19,8 +19,9 @@ SectionPoint nearestOnDisc(double radius, const Vec2& q) {
   return {radius * n, n, length - radius};
 }
 
-// The disc without x > flat_distance. Its corners (flat_distance, +-half_chord) are nearest to the points between their two normals;
-// everywhere else the section, being the intersection of disc and half-plane, has the larger of their two distances.
+// The disc without x > flat_distance. Its corners (flat_distance, +-half_chord) are nearest to the
+// points between their two normals; everywhere else the section, being the intersection of disc and
+// half-plane, has the larger of their two distances.
 SectionPoint nearestOnCutDisc(double radius, double flat_distance, const Vec2& q) {
   PINCER_ASSERT(0 < flat_distance && flat_distance < radius);
   const double half_chord = std::sqrt((radius - flat_distance) * (radius + flat_distance));
@@ -55,7 +56,8 @@ NearestPoint nearestPoint(const Cylinder& cylinder, const Vec3& p_BC) {
 }
 
 NearestPoint nearestPoint(const CylinderWithFlat& cylinder, const Vec3& p_BC) {
-  return drawnOut(nearestOnCutDisc(cylinder.radius, cylinder.flat_distance, p_BC.head<2>()), cylinder.half_length, p_BC);
+  return drawnOut(nearestOnCutDisc(cylinder.radius, cylinder.flat_distance, p_BC.head<2>()), cylinder.half_length,
+                  p_BC);
 }
 
 }  // namespace pincer::contact

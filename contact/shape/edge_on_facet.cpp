@@ -8,7 +8,8 @@
 namespace pincer::contact {
 namespace {
 
-// The rest of the line q + t u: ends that are outside by less than the slack stay where they are, others move to the crossing.
+// The rest of the line q + t u: ends that are outside by less than the slack stay
+// where they are, others move to the crossing.
 struct Range {
   double from, to, slack;  // [m]
 
@@ -46,7 +47,8 @@ EdgePart overPolygon(const Vec3& p, const Vec3& e, double length, const Vec3& n,
   for (int i = 0; i < f.count; ++i) {
     if (!f.isStraight(i)) continue;
     const Vec3& from = f.corners[static_cast<std::size_t>(i)].p;
-    const Vec3 inwards = f.n.cross(f.corners[static_cast<std::size_t>(i + 1 < f.count ? i + 1 : 0)].p - from).normalized();
+    const Vec3 inwards =
+        f.n.cross(f.corners[static_cast<std::size_t>(i + 1 < f.count ? i + 1 : 0)].p - from).normalized();
     range.keep(inwards.dot(q - from), inwards.dot(u));
   }
   if (f.rim_radius > 0) range.keepWithin(f.rim_radius, q, u);
@@ -54,7 +56,8 @@ EdgePart overPolygon(const Vec3& p, const Vec3& e, double length, const Vec3& n,
   return {{{{range.from, height + range.from * slope}, {range.to, height + range.to * slope}}}, true, true};
 }
 
-EdgePart overLine(const Vec3& p, const Vec3& e, double length, const Vec3& n, const Facet& f, double slack, const Shape& shape) {
+EdgePart overLine(const Vec3& p, const Vec3& e, double length, const Vec3& n, const Facet& f, double slack,
+                  const Shape& shape) {
   const Vec3 &from = f.corners[0].p, line = f.corners[1].p - from;
   const double line_length = line.norm();
   if (e.cross(line).norm() > kNearlyParallelEdges * line_length) return {};
@@ -63,14 +66,16 @@ EdgePart overLine(const Vec3& p, const Vec3& e, double length, const Vec3& n, co
   range.keep(along, rate);
   range.keep(line_length - along, -rate);
   if (range.isEmpty()) return {};
-  const Vec3 axis = line / line_length, across = (n - n.dot(axis) * axis).normalized();  // exactly, or the solid's end might be what is met
+  // exactly, or the solid's end might be what is met
+  const Vec3 axis = line / line_length, across = (n - n.dot(axis) * axis).normalized();
   const auto at = [&](double t) -> EdgePart::End { return {t, -reachOf(shape, p + t * e, across)}; };
   return {{at(range.from), at(range.to)}, false, true};
 }
 
 }  // namespace
 
-EdgePart partOverFacet(const Vec3& p, const Vec3& e, double length, const Vec3& n, const PosedSolid& solid, double slack) {
+EdgePart partOverFacet(const Vec3& p, const Vec3& e, double length, const Vec3& n, const PosedSolid& solid,
+                       double slack) {
   PINCER_ASSERT(isUnitIfFinite(e) && isUnitIfFinite(n));
   PINCER_ASSERT(!(std::abs(e.dot(n)) > 1e-3));  // normals of slivers lean by their round-off
   Facet facet;

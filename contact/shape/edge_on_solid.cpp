@@ -29,7 +29,8 @@ class EdgeSearch {
   Looked lookAt(const Vec3& n, const Vec3& b) const { return {n, b, e_.cross(n).dot(p_ - b)}; }
 
   void offer(const Vec3& n, const Vec3& b) {
-    if (found_.count < EdgeContacts::kMost) found_.all[static_cast<std::size_t>(found_.count++)] = {n, b, n.dot(p_ - b)};
+    if (found_.count < EdgeContacts::kMost)
+      found_.all[static_cast<std::size_t>(found_.count++)] = {n, b, n.dot(p_ - b)};
   }
 
   // No direction between the two has a greater gap: that of one point of the solid.
@@ -108,7 +109,8 @@ class EdgeSearch {
 
 }  // namespace
 
-EdgeContacts edgeOnSolid(const Vec3& p, const Vec3& e, const Vec3& n_lo, const Vec3& n_hi, const PosedSolid& solid, double deepest) {
+EdgeContacts edgeOnSolid(const Vec3& p, const Vec3& e, const Vec3& n_lo, const Vec3& n_hi, const PosedSolid& solid,
+                         double deepest) {
   PINCER_ASSERT(isUnitIfFinite(e) && isUnitIfFinite(n_lo) && isUnitIfFinite(n_hi));
   PINCER_ASSERT(deepest < 0);
   return EdgeSearch(p, n_lo.cross(n_hi).dot(e) < 0 ? Vec3(-e) : e, solid, deepest).find(n_lo, n_hi);

@@ -40,7 +40,8 @@ ExtremePoints pointsOf(const Capsule& capsule, const Vec2&, ExtremePointStore& s
 
 ExtremePoints pointsOf(const Box& box, const Vec2&, ExtremePointStore& store) {
   const auto at = [](bool positive, double half) { return positive ? half : -half; };
-  for (std::uint32_t i = 0; i < 8; ++i) store.add({at(i & 1, box.half.x()), at(i & 2, box.half.y()), at(i & 4, box.half.z())}, i);
+  for (std::uint32_t i = 0; i < 8; ++i)
+    store.add({at(i & 1, box.half.x()), at(i & 2, box.half.y()), at(i & 4, box.half.z())}, i);
   return stored(store);
 }
 
@@ -68,9 +69,13 @@ ExtremePoints pointsOf(const CylinderWithFlat& cylinder, const Vec2& steepest, E
 
 ExtremePoints pointsOf(const HalfSpace&, const Vec2&, ExtremePointStore&) { return {}; }
 ExtremePoints pointsOf(const Dish&, const Vec2&, ExtremePointStore&) { return {}; }
-ExtremePoints pointsOf(const Mesh& mesh, const Vec2&, ExtremePointStore&) { return {mesh.surface->hullVertices(), {}, 0}; }
+ExtremePoints pointsOf(const Mesh& mesh, const Vec2&, ExtremePointStore&) {
+  return {mesh.surface->hullVertices(), {}, 0};
+}
 
-ExtremePoints pointsOf(const Convex& convex, const Vec2&, ExtremePointStore&) { return {convex.hull->vertices(), {}, 0}; }
+ExtremePoints pointsOf(const Convex& convex, const Vec2&, ExtremePointStore&) {
+  return {convex.hull->vertices(), {}, 0};
+}
 
 }  // namespace
 

@@ -3,15 +3,18 @@
 //   box                 its corners; feature: bits 0, 1, 2 set where x, y, z are positive
 //   capsule             the centres of its ends, rounded by its radius; feature 0 at +z, 1 at -z
 //   sphere              its centre, rounded by its radius; feature 0
-//   cylinder            four points of each rim, 90 degrees apart; feature 4 e + k, e = 0 at +z, 1 at -z, k quarter turns from the first
-//   cylinder with flat  the same, but none that the flat has cut off, and the flat's corners: feature 8 + 2 e + (1 where y < 0)
+//   cylinder            four points of each rim, 90 degrees apart; feature 4 e + k, e = 0 at
+//                       +z, 1 at -z, k quarter turns from the first
+//   cylinder with flat  the same, but none that the flat has cut off, and the flat's
+//                       corners: feature 8 + 2 e + (1 where y < 0)
 //   convex hull         its corners; feature: the index
 //   mesh                the vertices of its convex hull; feature: the index
 //
-// The first point of a rim is its deepest: it moves along the rim as the cylinder rolls, and is exact for rolling, tipping and lying on
-// the side. A cylinder that stands upright to within 1e-6 rad has no deepest rim point but noise; there the four points are fixed in the
-// body (the first at +x), so that a resting cylinder keeps its contacts. The price: the rim is deeper than its points by at most 0.3e-6
-// radii. A mesh rests on the facets of its hull: the support does not feel how the smooth surface bulges between the vertices.
+// The first point of a rim is its deepest: it moves along the rim as the cylinder rolls, and is exact for rolling,
+// tipping and lying on the side. A cylinder that stands upright to within 1e-6 rad has no deepest rim point but noise;
+// there the four points are fixed in the body (the first at +x), so that a resting cylinder keeps its contacts. The
+// price: the rim is deeper than its points by at most 0.3e-6 radii. A mesh rests on the facets of its hull: the support
+// does not feel how the smooth surface bulges between the vertices.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -45,8 +48,8 @@ struct ExtremePointStore {
   }
 };
 
-// `steepest`: of the support, see support.h. The points are sorted by feature; they live in `store` or in the shape. HalfSpace and Dish
-// have none.
+// `steepest`: of the support, see support.h. The points are sorted by feature; they live in `store` or in
+// the shape. HalfSpace and Dish have none.
 ExtremePoints extremePoints(const Shape& solid, const Vec2& steepest, ExtremePointStore& store);
 
 }  // namespace pincer::contact

@@ -9,7 +9,8 @@
 namespace pincer::contact {
 namespace {
 
-constexpr int kMostCorners = 4;            // of a face that lies over another with all of them; of more there is a choice to be made
+// of a face that lies over another with all of them; of more there is a choice to be made
+constexpr int kMostCorners = 4;
 constexpr double kLowestRounding = 1e-13;  // of the size: round-off, as separation.cpp has it
 
 // One solid over the face `base` of the other: what of it faces that, seen in the base's frame.
@@ -80,7 +81,8 @@ class OverFace {
 
 }  // namespace
 
-bool touchOnFaces(const PosedSolid& a, const PosedSolid& b, const Vec3& last_n, double size, double margin, PairPoints& out) {
+bool touchOnFaces(const PosedSolid& a, const PosedSolid& b, const Vec3& last_n, double size, double margin,
+                  PairPoints& out) {
   PINCER_ASSERT(isUnitIfFinite(last_n) && size > 0);
   for (const bool is_base_a : {false, true}) {
     out.count = 0;

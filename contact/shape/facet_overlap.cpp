@@ -47,9 +47,10 @@ void makePoint(const Vec3& p, const View& view, FlatCorner named, FlatFacet& out
   out.z0 = view.along(p);
 }
 
-// `sign` is the side of n that the facet faces: -1 for a's. Facets too steep to have a height over each place are reduced to their corner or
-// edge that reaches furthest.
-void flatten(const PosedSolid& solid, const Facet& facet, double sign, const View& view, std::uint32_t kind, double size, FlatFacet& out) {
+// `sign` is the side of n that the facet faces: -1 for a's. Facets too steep to have a height over each place are
+// reduced to their corner or edge that reaches furthest.
+void flatten(const PosedSolid& solid, const Facet& facet, double sign, const View& view, std::uint32_t kind,
+             double size, FlatFacet& out) {
   constexpr double kSteepest = 0.05;  // cosine between n and the facet's
   const auto corner = [&](int i) -> const FacetCorner& { return facet.corners[static_cast<std::size_t>(i)]; };
   const auto named = [&](int i, int edge) -> FlatCorner {
@@ -64,7 +65,8 @@ void flatten(const PosedSolid& solid, const Facet& facet, double sign, const Vie
     out.slope = -view.across(m) / rise;
     out.count = facet.count;
     for (int i = 0; i < facet.count; ++i) {
-      const int from = sign > 0 ? i : facet.count - 1 - i, edge = sign > 0 ? from : (from + facet.count - 1) % facet.count;
+      const int from = sign > 0 ? i : facet.count - 1 - i,
+                edge = sign > 0 ? from : (from + facet.count - 1) % facet.count;
       FlatCorner& c = out.corners[static_cast<std::size_t>(i)] = named(from, edge);
       c.x = view.across(placeOf(from));
     }
@@ -106,8 +108,10 @@ struct EdgeLine {
   Vec2 from, edge;
   double length;
 
-  EdgeLine(const FlatFacet& f, int j) : from(f.corner(j).x), edge(f.corner(j + 1 < f.count ? j + 1 : 0).x - from), length(edge.norm()) {}
-  double leftOf(const Vec2& x) const { return length > 0 ? cross(edge, x - from) / length : 0; }  // how far `x` is to its left [m]
+  EdgeLine(const FlatFacet& f, int j)
+      : from(f.corner(j).x), edge(f.corner(j + 1 < f.count ? j + 1 : 0).x - from), length(edge.norm()) {}
+  // how far `x` is to its left [m]
+  double leftOf(const Vec2& x) const { return length > 0 ? cross(edge, x - from) / length : 0; }
 };
 
 // A polygon being clipped: each edge belongs to the facet that is clipped, or lies on an edge of the clipping one.
@@ -126,7 +130,8 @@ struct ClipPolygon {
   }
 };
 
-// The name of the point where the clipping edge j meets the edge that `c` begins: a crossing, or a corner of the clipping facet.
+// The name of the point where the clipping edge j meets the edge that `c` begins: a
+// crossing, or a corner of the clipping facet.
 std::uint32_t nameOfCut(const ClipCorner& c, const FlatFacet& clipper, int j, bool clipper_is_a) {
   if (c.clip < 0) {
     const std::uint32_t other = clipper.corner(j).edge;
@@ -136,7 +141,8 @@ std::uint32_t nameOfCut(const ClipCorner& c, const FlatFacet& clipper, int j, bo
 }
 
 // False where nothing of `in` is beyond the edge: then `out` isn't written.
-bool clipBy(const FlatFacet& clipper, int j, bool clipper_is_a, double tolerance, const ClipPolygon& in, ClipPolygon& out) {
+bool clipBy(const FlatFacet& clipper, int j, bool clipper_is_a, double tolerance, const ClipPolygon& in,
+            ClipPolygon& out) {
   const EdgeLine line(clipper, j);
   std::array<double, kMostShared> left;
   bool all_in = true;
@@ -167,7 +173,8 @@ bool clipBy(const FlatFacet& clipper, int j, bool clipper_is_a, double tolerance
 void clipFacet(const FlatFacet& facet, const FlatFacet& clipper, bool clipper_is_a, double tolerance, Shared& out) {
   std::array<ClipPolygon, 2> polygons;
   ClipPolygon *from = &polygons[0], *to = &polygons[1];
-  for (int i = 0; i < facet.count; ++i) from->add({facet.corner(i).x, facet.corner(i).feature, facet.corner(i).edge, -1});
+  for (int i = 0; i < facet.count; ++i)
+    from->add({facet.corner(i).x, facet.corner(i).feature, facet.corner(i).edge, -1});
   for (int j = 0; j < clipper.count && from->count > 0; ++j) {
     if (clipBy(clipper, j, clipper_is_a, tolerance, *from, *to)) std::swap(from, to);
   }
@@ -230,7 +237,8 @@ class KnownGaps {
   Vec3 n_;
 };
 
-// Heights of the two surfaces over a place: of polygons the plane's, over lines of round walls where the ray along n leaves the solid.
+// Heights of the two surfaces over a place: of polygons the plane's, over lines of round
+// walls where the ray along n leaves the solid.
 class Surfaces {
  public:
   Surfaces(const PosedSolid& a, const PosedSolid& b, const FlatFacet& fa, const FlatFacet& fb, const View& view)
@@ -238,7 +246,9 @@ class Surfaces {
   double top(const Vec2& x) const { return height(a_, fa_, -1, rounding_a_, x); }
   double bottom(const Vec2& x) const { return height(b_, fb_, 1, rounding_b_, x); }
   double roundings() const { return rounding_a_ + rounding_b_; }
-  Vec3 place(const Vec2& x, double z) const { return x.x() * view_.R.col(0) + x.y() * view_.R.col(1) + z * view_.R.col(2); }
+  Vec3 place(const Vec2& x, double z) const {
+    return x.x() * view_.R.col(0) + x.y() * view_.R.col(1) + z * view_.R.col(2);
+  }
 
  private:
   double height(const PosedSolid& solid, const FlatFacet& f, double sign, double rounding, const Vec2& x) const {
@@ -291,7 +301,8 @@ void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& 
 
 }  // namespace
 
-bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin, PairPoints& out) {
+bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin,
+                   PairPoints& out) {
   const Vec3& n = along.n;
   PINCER_ASSERT(isUnitIfFinite(n));
   PINCER_ASSERT(size > 0);

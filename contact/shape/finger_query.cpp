@@ -22,7 +22,8 @@ SurfaceContacts contactAt(const NearestPoint& s, double r) {
 
 }  // namespace
 
-SurfaceContacts querySphere(const Shape& shape, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) {
+SurfaceContacts querySphere(const Shape& shape, const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker,
+                            PatchCache& cache) {
   PINCER_ASSERT(r >= 0 && !(margin < 0));
   return std::visit(
       [&](const auto& solid) -> SurfaceContacts {
@@ -46,29 +47,31 @@ void add(const SurfaceContact& point, std::uint32_t ball, FingerContacts& out) {
 }
 
 // A capsule's ends that come within the margin, where they aren't the deepest place `c_F` themselves.
-void addEnds(const Shape& shape, const CapsuleTip& capsule, const Pose& X_BF, double margin, const Vec3& c_F, FingerTracker& tracker,
-             PatchCache& cache, FingerContacts& out) {
+void addEnds(const Shape& shape, const CapsuleTip& capsule, const Pose& X_BF, double margin, const Vec3& c_F,
+             FingerTracker& tracker, PatchCache& cache, FingerContacts& out) {
   constexpr double kApart = 1e-3;  // of the capsule's half length
   for (const std::uint32_t end : {1u, 2u}) {
     const Vec3 c_end = (end == 1 ? -1.0 : 1.0) * capsule.half_F;
     if ((c_end - c_F).norm() < kApart * capsule.half_F.norm()) continue;
     ++out.queries;
-    const SurfaceContact point = querySphere(shape, X_BF * c_end, capsule.radius, margin, tracker.feet[end - 1].ball, cache).main();
+    const SurfaceContact point =
+        querySphere(shape, X_BF * c_end, capsule.radius, margin, tracker.feet[end - 1].ball, cache).main();
     if (point.phi < margin) add(point, end, out);
   }
 }
 
 }  // namespace
 
-FingerContacts queryFinger(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker,
-                           PatchCache& cache) {
+FingerContacts queryFinger(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin,
+                           FingerTracker& tracker, PatchCache& cache) {
   PINCER_ASSERT(isUnitIfFinite(X_BF.q));
   if (std::holds_alternative<PadTip>(finger)) return queryPad(shape, finger, X_BF, margin, tracker, cache);
   const CoreDescent deepest = descend(shape, finger, X_BF, margin, tracker.main, cache);
   FingerContacts out;
   out.queries = deepest.queries;
   for (int i = 0; i < deepest.found.count; ++i) add(deepest.found.points[static_cast<std::size_t>(i)], 0, out);
-  if (const auto* capsule = std::get_if<CapsuleTip>(&finger)) addEnds(shape, *capsule, X_BF, margin, deepest.c_F, tracker, cache, out);
+  if (const auto* capsule = std::get_if<CapsuleTip>(&finger))
+    addEnds(shape, *capsule, X_BF, margin, deepest.c_F, tracker, cache, out);
   return out;
 }
 

@@ -11,7 +11,8 @@
 namespace pincer::contact {
 namespace {
 
-[[maybe_unused]] constexpr double kUnitByHand = 1e-5;  // of a pad's axes as their author wrote them: buildGrasp takes lengths within 1e-6
+// of a pad's axes as their author wrote them: buildGrasp takes lengths within 1e-6
+[[maybe_unused]] constexpr double kUnitByHand = 1e-5;
 
 double leastCurvatureRadius(const Vec3& a) { return a.minCoeff() * a.minCoeff() / a.maxCoeff(); }
 
@@ -20,8 +21,9 @@ Vec3 ellipsoidSupport(const Vec3& a, const Vec3& d) {
   return a.cwiseProduct(ad) / ad.norm();
 }
 
-// x_i = a_i^2 y_i / (t + a_i^2) with the root t of sum (a_i y_i / (t + a_i^2))^2 = 1: convex and falling, so that Newton's method from its
-// left never overshoots. Source: D. Eberly, Distance from a point to an ellipsoid, 2013 (the equation).
+// x_i = a_i^2 y_i / (t + a_i^2) with the root t of sum (a_i y_i / (t + a_i^2))^2 = 1: convex and
+// falling, so that Newton's method from its left never overshoots. Source: D. Eberly, Distance from a
+// point to an ellipsoid, 2013 (the equation).
 Vec3 nearestOnEllipsoid(const Vec3& a, const Vec3& y) {
   const Vec3 a2 = a.cwiseAbs2();
   double t = std::max(0.0, (a.cwiseProduct(y.cwiseAbs()) - a2).maxCoeff());
@@ -41,7 +43,9 @@ struct CoreOf {
   const Vec3& d;
 
   Vec3 operator()(const Sphere&) const { return Vec3::Zero(); }
-  Vec3 operator()(const CapsuleTip& c) const { return std::clamp(p.dot(c.half_F) / c.half_F.squaredNorm(), -1.0, 1.0) * c.half_F; }
+  Vec3 operator()(const CapsuleTip& c) const {
+    return std::clamp(p.dot(c.half_F) / c.half_F.squaredNorm(), -1.0, 1.0) * c.half_F;
+  }
   Vec3 operator()(const EllipsoidTip& e) const {
     const double rho = leastCurvatureRadius(e.semi_axes);
     if (p.cwiseQuotient(e.semi_axes).squaredNorm() <= 1) return ellipsoidSupport(e.semi_axes, d) - rho * d;
@@ -59,8 +63,12 @@ struct CoreSupport {
 
   Vec3 operator()(const Sphere&) const { return Vec3::Zero(); }
   Vec3 operator()(const CapsuleTip& c) const { return signOf(c.half_F.dot(d)) * c.half_F; }
-  Vec3 operator()(const EllipsoidTip& e) const { return ellipsoidSupport(e.semi_axes, d) - leastCurvatureRadius(e.semi_axes) * d; }
-  Vec3 operator()(const PadTip& pad) const { return pad.hull->vertices()[static_cast<std::size_t>(pad.hull->extremeVertex(d))]; }
+  Vec3 operator()(const EllipsoidTip& e) const {
+    return ellipsoidSupport(e.semi_axes, d) - leastCurvatureRadius(e.semi_axes) * d;
+  }
+  Vec3 operator()(const PadTip& pad) const {
+    return pad.hull->vertices()[static_cast<std::size_t>(pad.hull->extremeVertex(d))];
+  }
 };
 
 // The unit direction at share `s` of the turn from a to b.
@@ -108,8 +116,9 @@ double arcOverSkin(const FingerShape& finger, const Vec3& from_F, const Vec3& no
   constexpr int kChords = 32;
   Vec3 last = coreSupportOf(finger, from_F);
   for (int i = 1; i <= kChords; ++i) {
-    const Vec3 next =
-        i == kChords ? Vec3(to_F - rho * normal_F) : coreSupportOf(finger, directionBetween(from_F, normal_F, angle, double(i) / kChords));
+    const Vec3 next = i == kChords
+                          ? Vec3(to_F - rho * normal_F)
+                          : coreSupportOf(finger, directionBetween(from_F, normal_F, angle, double(i) / kChords));
     arc += (next - last).norm();
     last = next;
   }
@@ -120,23 +129,27 @@ std::string problemWith(const FingerShape& finger) {
   const auto good = [](double length) { return length > 0 && length <= 1; };
   if (const auto* sphere = std::get_if<Sphere>(&finger)) {
     if (!good(sphere->radius))
-      return fmt::format("radius = {} is out of range (0, 1]. It is in metres; a fingertip has about 0.008.", sphere->radius);
+      return fmt::format("radius = {} is out of range (0, 1]. It is in metres; a fingertip has about 0.008.",
+                         sphere->radius);
   } else if (const auto* capsule = std::get_if<CapsuleTip>(&finger)) {
     if (!good(capsule->radius))
-      return fmt::format("radius = {} is out of range (0, 1]. It is in metres; a fingertip has about 0.008.", capsule->radius);
+      return fmt::format("radius = {} is out of range (0, 1]. It is in metres; a fingertip has about 0.008.",
+                         capsule->radius);
     if (!good(2 * capsule->half_F.norm()))
       return fmt::format("length = {} is out of range (0, 1]. It is in metres.", 2 * capsule->half_F.norm());
   } else if (const auto* ellipsoid = std::get_if<EllipsoidTip>(&finger)) {
     const Vec3& a = ellipsoid->semi_axes;
     if (!(good(a.minCoeff()) && good(a.maxCoeff()) && a.maxCoeff() <= 10 * a.minCoeff())) {
-      return fmt::format("semi_axes = ({}, {}, {}) are out of range: each in (0, 1] m, and none more than ten times another.", a.x(), a.y(),
-                         a.z());
+      return fmt::format(
+          "semi_axes = ({}, {}, {}) are out of range: each in (0, 1] m, and none more than ten times another.", a.x(),
+          a.y(), a.z());
     }
   } else {
     const auto& pad = std::get<PadTip>(finger);
     if (!pad.hull) return "pad: it has no points.";
     if (!good(pad.rounding))
-      return fmt::format("rounding = {} is out of range (0, 1]. It is in metres; 0.0005 suits a fingerpad.", pad.rounding);
+      return fmt::format("rounding = {} is out of range (0, 1]. It is in metres; 0.0005 suits a fingerpad.",
+                         pad.rounding);
   }
   return "";
 }

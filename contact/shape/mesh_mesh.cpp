@@ -22,17 +22,24 @@ struct SeenMesh {
 class MeshOnMesh {
  public:
   MeshOnMesh(const Mesh& a, const Mesh& b, const Pose& X_AB, const MeshScale& scale)
-      : a_(a.surface->features()), b_(b.surface->features()), R_(X_AB.q.toRotationMatrix()), p_(X_AB.p), scale_(scale) {}
+      : a_(a.surface->features()),
+        b_(b.surface->features()),
+        R_(X_AB.q.toRotationMatrix()),
+        p_(X_AB.p),
+        scale_(scale) {}
 
   void find() {
     const SeenMesh b_from_a{b_, R_.transpose(), -(R_.transpose() * p_)}, a_from_b{a_, R_, p_};
     visitNear(a_, b_from_a, [&](std::int32_t t, const FlatTriangle& triangle) {
       lookAtCorners(triangle, a_, b_from_a, kMeshCornerOfA);
       for (int i = 0; i < 3; ++i) {
-        if (triangle.ownsEdge(i)) lookAtEdge(triangle, i, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(i), b_from_a);
+        if (triangle.ownsEdge(i))
+          lookAtEdge(triangle, i, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(i), b_from_a);
       }
     });
-    visitNear(b_, a_from_b, [&](std::int32_t, const FlatTriangle& triangle) { lookAtCorners(triangle, b_, a_from_b, kMeshCornerOfB); });
+    visitNear(b_, a_from_b, [&](std::int32_t, const FlatTriangle& triangle) {
+      lookAtCorners(triangle, b_, a_from_b, kMeshCornerOfB);
+    });
   }
   ContactCandidates& candidates() { return candidates_; }
 
@@ -47,7 +54,8 @@ class MeshOnMesh {
       const FlatTriangle triangle = mesh.triangle(t);
       const Vec3 q0 = other.place(triangle.p[0]), q1 = other.place(triangle.p[1]), q2 = other.place(triangle.p[2]);
       const Vec3 reach = Vec3::Constant(scale_.margin);
-      if (!other.features.tree().meetsBox(q0.cwiseMin(q1).cwiseMin(q2) - reach, q0.cwiseMax(q1).cwiseMax(q2) + reach)) return;
+      if (!other.features.tree().meetsBox(q0.cwiseMin(q1).cwiseMin(q2) - reach, q0.cwiseMax(q1).cwiseMax(q2) + reach))
+        return;
       visit(t, triangle);
     });
   }
@@ -65,7 +73,8 @@ class MeshOnMesh {
   }
 
   // In the other's frame n points from the other to the corner.
-  void lookAtCorner(const Vec3& p, std::int32_t vertex, const MeshFeatures& own, const SeenMesh& other, std::uint32_t kind) {
+  void lookAtCorner(const Vec3& p, std::int32_t vertex, const MeshFeatures& own, const SeenMesh& other,
+                    std::uint32_t kind) {
     const Vec3 q = other.place(p);
     const MeshFeatures::Nearest s = other.features.nearest(q, std::max(scale_.margin, -scale_.deepest()));
     if (!s.found || !(s.distance < scale_.margin)) return;
@@ -105,7 +114,8 @@ class MeshOnMesh {
       other = (d - e.dot(d) * e).normalized();
       n_other = other.cross(e);
     }
-    // How steep `n`, out of the solid, is on the flatter of the two (cosine): a point below the edge along n lies so much of its way behind it.
+    // How steep `n`, out of the solid, is on the flatter of the two (cosine): a point below the edge
+    // along n lies so much of its way behind it.
     double leastSlope(const Vec3& n) const { return std::min(n.dot(n_own), n.dot(n_other)); }
     // True if both triangles lie on n's side of the edge.
     bool lieAbove(const Vec3& n) const { return n.dot(own) >= -kEdgeSlack && n.dot(other) >= -kEdgeSlack; }
@@ -122,7 +132,8 @@ class MeshOnMesh {
       if (!b_.meetsBox(t, low, high)) return;
       const FlatTriangle tb = b_.triangle(t);
       for (int j = 0; j < 3; ++j) {
-        if (tb.ownsEdge(j)) lookAtEdges(a0, a1, e, sides, tb, j, name, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(j));
+        if (tb.ownsEdge(j))
+          lookAtEdges(a0, a1, e, sides, tb, j, name, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(j));
       }
     });
   }
@@ -146,10 +157,13 @@ class MeshOnMesh {
     const Vec3 on_a = a0 + s * e, on_b = b0 + t * f;
     const double phi = n.dot(on_a - on_b);
     if (!(phi < scale_.margin && phi > scale_.deepest())) return;
-    const PairPoint point{0.5 * (on_a + on_b), n, phi, meshFeatureOf(kMeshEdges, name_a * 0x9e3779b1u ^ name_b * 0x85ebca6bu)};
+    const PairPoint point{0.5 * (on_a + on_b), n, phi,
+                          meshFeatureOf(kMeshEdges, name_a * 0x9e3779b1u ^ name_b * 0x85ebca6bu)};
     if (!(phi < -slack)) return offer(point, true);
-    const MeshFeatures::Nearest in_b = b_.nearest(R_.transpose() * (on_a - p_), -1.1 * phi), in_a = a_.nearest(on_b, -1.1 * phi);
-    const bool is_way_out = in_a.found && in_b.found && scale_.isBehindFaces(in_a.distance, phi, sides.leastSlope(-n)) &&
+    const MeshFeatures::Nearest in_b = b_.nearest(R_.transpose() * (on_a - p_), -1.1 * phi),
+                                in_a = a_.nearest(on_b, -1.1 * phi);
+    const bool is_way_out = in_a.found && in_b.found &&
+                            scale_.isBehindFaces(in_a.distance, phi, sides.leastSlope(-n)) &&
                             scale_.isBehindFaces(in_b.distance, phi, sides_b.leastSlope(R_.transpose() * n));
     const bool is_inside = (in_a.found && in_a.distance < 0) || (in_b.found && in_b.distance < 0);
     if (is_way_out || is_inside) offer(point, is_way_out);

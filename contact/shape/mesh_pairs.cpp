@@ -14,7 +14,8 @@
 namespace pincer::contact {
 namespace {
 
-// How far in front of one of the solid's faces, of its depth across an edge of the solid, the point of the mesh's edge may be: edges of 70 degrees.
+// How far in front of one of the solid's faces, of its depth across an edge of the solid, the point of the
+// mesh's edge may be: edges of 70 degrees.
 constexpr double kBesideFace = 0.35;
 
 // Finds the candidates of a mesh on a solid, in the mesh's frame A. Normals point from the solid to the mesh.
@@ -45,7 +46,8 @@ class MeshOnSolid {
     if (height > scale_.deepest()) lookAtFace(triangle);
     for (int i = 0; i < 3; ++i) {
       if (triangle.ownsCorner(i)) lookAtCorner(triangle.corner(i), triangle.vertex(i));
-      if (triangle.ownsEdge(i)) lookAtEdge({triangle, i, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(i)});
+      if (triangle.ownsEdge(i))
+        lookAtEdge({triangle, i, 3 * static_cast<std::uint32_t>(t) + static_cast<std::uint32_t>(i)});
     }
   }
 
@@ -137,7 +139,12 @@ class MeshOnSolid {
     std::uint32_t name;
 
     Edge(const FlatTriangle& t, int i, std::uint32_t edge_name)
-        : p(t.corner(i)), e(t.corner(i + 1) - p), length(e.norm()), n(t.n), ends{t.vertex(i), t.vertex(i + 1)}, name(edge_name) {
+        : p(t.corner(i)),
+          e(t.corner(i + 1) - p),
+          length(e.norm()),
+          n(t.n),
+          ends{t.vertex(i), t.vertex(i + 1)},
+          name(edge_name) {
       n_other = (-e).cross(t.beyond[static_cast<std::size_t>(i)] - t.corner(i + 1)).normalized();
       e /= length;
     }
@@ -149,8 +156,9 @@ class MeshOnSolid {
     const auto gapAt = [&](const Vec3& n) { return n.dot(edge.p - solid_.support(n)) - rounding_; };
     if (gapAt(-edge.n) > scale_.margin || gapAt(-edge.n_other) > scale_.margin) return;
     const Vec3 out = edge.e.cross(edge.n), out_other = edge.n_other.cross(edge.e);  // of the two faces
-    const EdgeContacts found = edgeOnSolid(edge.p, edge.e, -(edge.n - kEdgeSlack * out).normalized(),
-                                           -(edge.n_other - kEdgeSlack * out_other).normalized(), solid_, scale_.deepest());
+    const EdgeContacts found =
+        edgeOnSolid(edge.p, edge.e, -(edge.n - kEdgeSlack * out).normalized(),
+                    -(edge.n_other - kEdgeSlack * out_other).normalized(), solid_, scale_.deepest());
     for (int k = 0; k < found.count; ++k) {
       const EdgeContact& s = found.all[static_cast<std::size_t>(k)];
       if (s.gap - rounding_ < scale_.margin) lookAlongEdge(edge, s);
@@ -167,20 +175,23 @@ class MeshOnSolid {
       offerOnEdge(edge, t, s.n, phi, meshFeatureOf(kMeshEdgeEnds, 2 * edge.name + end));
     }
     const double phi_s = s.gap - rounding_, along = edge.e.dot(s.p - edge.p);
-    if (part.found && (part.is_over_face || phi_s > std::min(part.ends[0].phi, part.ends[1].phi) - solid_.skin - kSameGap)) return;
+    if (part.found &&
+        (part.is_over_face || phi_s > std::min(part.ends[0].phi, part.ends[1].phi) - solid_.skin - kSameGap))
+      return;
     if (along >= -scale_.slack() && along <= edge.length + scale_.slack())
       offerOnEdge(edge, along, s.n, phi_s, meshFeatureOf(kMeshEdges, edge.name));
   }
 
-  // Overlap counts where the edge's point is in the solid, and the solid's opposite to it behind the two faces of the mesh's edge.
+  // Overlap counts where the edge's point is in the solid, and the solid's opposite to it
+  // behind the two faces of the mesh's edge.
   void offerOnEdge(const Edge& edge, double t, const Vec3& n, double phi, std::uint32_t feature) {
     const Vec3 p = edge.p + t * edge.e;
     const PairPoint point{p - 0.5 * phi * n, n, phi, feature};
     if (!(phi < -scale_.slack())) return offer(point, true);
     const double in_solid = nearest(p).distance;
     const MeshFeatures::Nearest in_mesh = features_.nearest(p - phi * n, -1.1 * phi);
-    const bool is_way_out = in_solid < scale_.slack() - kBesideFace * phi && scale_.isWayOut(phi, in_solid) && in_mesh.found &&
-                            scale_.isBehindFaces(in_mesh.distance, phi, edge.slope(n));
+    const bool is_way_out = in_solid < scale_.slack() - kBesideFace * phi && scale_.isWayOut(phi, in_solid) &&
+                            in_mesh.found && scale_.isBehindFaces(in_mesh.distance, phi, edge.slope(n));
     if (is_way_out || in_solid < 0 || (in_mesh.found && in_mesh.distance < 0)) offer(point, is_way_out);
   }
 
@@ -189,15 +200,15 @@ class MeshOnSolid {
   MeshScale scale_;
   double rounding_;
   Vec3 faced_ = Vec3::Zero(), lowest_;  // see faceAlong
-  Facet facet_;                         // its corners where they are, on the solid's surface; none until they are asked for
-  std::int32_t at_ = -1;                // the triangle that is looked at
+  Facet facet_;           // its corners where they are, on the solid's surface; none until they are asked for
+  std::int32_t at_ = -1;  // the triangle that is looked at
   ContactCandidates candidates_;
 };
 
 }  // namespace
 
-void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin, PatchCache& cache,
-                           PairPoints& out) {
+void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin,
+                           PatchCache& cache, PairPoints& out) {
   out.count = 0;
   const double radius_a = mesh.surface->boundingRadius(), radius_b = boundingRadius(solid);
   const double furthest = radius_a + radius_b + margin;
@@ -212,7 +223,8 @@ void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& soli
   points.place(X_WA, out);
 }
 
-void collidePadWithMesh(const Shape& core, double rounding, const Pose& X_BF, const Mesh& mesh, double margin, PairPoints& out) {
+void collidePadWithMesh(const Shape& core, double rounding, const Pose& X_BF, const Mesh& mesh, double margin,
+                        PairPoints& out) {
   out.count = 0;
   const PosedSolid pad{core, X_BF.q.toRotationMatrix(), X_BF.p, rounding};
   MeshOnSolid search(mesh, pad, {std::min(mesh.surface->boundingRadius(), boundingRadius(core) + rounding), margin});

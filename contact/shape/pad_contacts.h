@@ -2,8 +2,9 @@
 //
 //   pad = K + ball(rho)        K the hull of points, rho its rounding (finger_shape.h)
 //
-// The facet of K that faces the body and the body's own are laid over each other as those of two bodies are (facet_overlap.h), with gaps that
-// are less by rho: tilt and torsion follow from the points. Points are named by corners and edges of the two, and stay while these touch.
+// The facet of K that faces the body and the body's own are laid over each other as those of two bodies are
+// (facet_overlap.h), with gaps that are less by rho: tilt and torsion follow from the points. Points are named by
+// corners and edges of the two, and stay while these touch.
 //
 // | body | points | where |
 // |---|---|---|
@@ -17,9 +18,10 @@
 
 namespace pincer::contact {
 
-// The points nearer than `margin` >= 0 [m], in the body's frame B, normals out of the body, sorted by feature; none for spheres.
-// `last_n_B`: a normal of the last ones, or zero: where the search begins. Allocates nothing once a mesh's features are built.
-void padOnShape(const PadTip& pad, const Pose& X_BF, const Shape& body, double margin, const Vec3& last_n_B, PatchCache& cache,
-                PairPoints& out);
+// The points nearer than `margin` >= 0 [m], in the body's frame B, normals out of the body, sorted by
+// feature; none for spheres. `last_n_B`: a normal of the last ones, or zero: where the search begins.
+// Allocates nothing once a mesh's features are built.
+void padOnShape(const PadTip& pad, const Pose& X_BF, const Shape& body, double margin, const Vec3& last_n_B,
+                PatchCache& cache, PairPoints& out);
 
 }  // namespace pincer::contact

@@ -16,7 +16,8 @@ constexpr double kApartOnPad = 1e-3;  // of the pad's size: two places nearer th
 
 class PadQuery {
  public:
-  PadQuery(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker, PatchCache& cache)
+  PadQuery(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker,
+           PatchCache& cache)
       : shape_(shape),
         pad_(std::get<PadTip>(finger)),
         finger_(finger),
@@ -61,8 +62,9 @@ class PadQuery {
 
   // The deepest first; of more than there is room for the deepest.
   static FingerContacts contactsOf(PairPoints& patch) {
-    std::sort(patch.points.begin(), patch.points.begin() + patch.count,
-              [](const PairPoint& x, const PairPoint& y) { return x.phi < y.phi || (x.phi == y.phi && x.feature < y.feature); });
+    std::sort(patch.points.begin(), patch.points.begin() + patch.count, [](const PairPoint& x, const PairPoint& y) {
+      return x.phi < y.phi || (x.phi == y.phi && x.feature < y.feature);
+    });
     FingerContacts found;
     found.queries = 1;
     const int count = std::min(patch.count, kMaxFingerContacts);
@@ -85,7 +87,9 @@ class PadQuery {
     return found;
   }
 
-  const SurfaceSlot& slotOf(const SurfaceContact& main) const { return tracker_.main.ball.slots[main.feature % kMaxSurfaceContacts]; }
+  const SurfaceSlot& slotOf(const SurfaceContact& main) const {
+    return tracker_.main.ball.slots[main.feature % kMaxSurfaceContacts];
+  }
 
   // Inside of a flat triangle the smooth surface has its normal: without that the others needn't be asked.
   bool mayBeFlat(const SurfaceContact& main) const {
@@ -96,8 +100,8 @@ class PadQuery {
     return (features.triangle(slot.triangle).n - main.n_B).squaredNorm() < kSameNormal * kSameNormal;
   }
 
-  // True if the flat triangles are the surface where the smooth one is touched: they answer with its normal in more than one place, no shallower, and there
-  // and halfway between two of these the surface has their gap.
+  // True if the flat triangles are the surface where the smooth one is touched: they answer with its normal in more
+  // than one place, no shallower, and there and halfway between two of these the surface has their gap.
   bool isFlat(const PairPoints& patch, const SurfaceContact& main) {
     const double same_gap = 1e-6 * size_;
     const PairPoint *deepest = nullptr, *furthest = nullptr;
@@ -119,11 +123,12 @@ class PadQuery {
       const Vec3 p_BC = p_W + (0.5 * phi + pad_.rounding) * main.n_B;
       return std::abs(querySphere(shape_, p_BC, pad_.rounding, 0, tracker, cache_).main().phi - phi) < same_gap;
     };
-    return isLevel(deepest->p_W, deepest->phi) && isLevel(0.5 * (deepest->p_W + furthest->p_W), 0.5 * (deepest->phi + furthest->phi));
+    return isLevel(deepest->p_W, deepest->phi) &&
+           isLevel(0.5 * (deepest->p_W + furthest->p_W), 0.5 * (deepest->phi + furthest->phi));
   }
 
-  // Of the facet that faces the surface: along its edges, each a capsule that searches from where the main contact is, and from its corners downhill.
-  // Neither finds a place where the mesh only falls away from the main one.
+  // Of the facet that faces the surface: along its edges, each a capsule that searches from where the main contact is,
+  // and from its corners downhill. Neither finds a place where the mesh only falls away from the main one.
   void addFurther(FingerContacts& found) {
     Facet facet;
     facetOf(Convex{pad_.hull}, X_BF_.q.conjugate() * -found.main().n_B, facet);
@@ -131,13 +136,16 @@ class PadQuery {
       if (mayReachEdge(facet, k)) addEdge(facet, k, found);
     }
     if (onlyFallsAway(facet, found.main())) return;
-    for (std::size_t k = 0; k < tracker_.feet.size() && static_cast<int>(k) < facet.count; ++k) addDownhill(facet, k, found);
+    for (std::size_t k = 0; k < tracker_.feet.size() && static_cast<int>(k) < facet.count; ++k)
+      addDownhill(facet, k, found);
   }
 
   const MeshFeatures& features() const { return std::get<Mesh>(shape_).surface->features(); }
   // How far from the core flat triangles may be that the surface touches.
   double reach() const { return pad_.rounding + margin_ + std::get<Mesh>(shape_).surface->bulge(); }
-  Vec3 cornerOf(const Facet& facet, int k) const { return X_BF_ * facet.corners[static_cast<std::size_t>(k % facet.count)].p; }
+  Vec3 cornerOf(const Facet& facet, int k) const {
+    return X_BF_ * facet.corners[static_cast<std::size_t>(k % facet.count)].p;
+  }
 
   bool mayReachEdge(const Facet& facet, int k) const {
     const Vec3 from = cornerOf(facet, k), to = cornerOf(facet, k + 1), around = Vec3::Constant(reach());
@@ -147,8 +155,9 @@ class PadQuery {
     return may;
   }
 
-  // True if every triangle that the facet may touch leans away from the main contact: then the gap grows along each way from there, and has no other
-  // minimum. Another rim or bump would have a side that faces it. What is level along a way, as a cylinder, isn't known by that.
+  // True if every triangle that the facet may touch leans away from the main contact: then the gap grows along each way
+  // from there, and has no other minimum. Another rim or bump would have a side that faces it. What is level along a
+  // way, as a cylinder, isn't known by that.
   bool onlyFallsAway(const Facet& facet, const SurfaceContact& main) const {
     constexpr double kLeans = 1e-6;  // sine
     const Vec3 ahead = X_BF_.q * facet.n, around = Vec3::Constant(reach());
@@ -180,10 +189,11 @@ class PadQuery {
     addIfNew(descend(shape_, edge, X_BE, 0, tracker, cache_), kFirstEdge + from.edge, found);
   }
 
-  // Of as many corners as there are trackers, evenly around: a place of its own where the surface is hollow between it and the deepest.
+  // Of as many corners as there are trackers, evenly around: a place of its own where the
+  // surface is hollow between it and the deepest.
   void addDownhill(const Facet& facet, std::size_t k, FingerContacts& found) {
-    const std::size_t corner =
-        k * static_cast<std::size_t>(facet.count) / std::min<std::size_t>(tracker_.feet.size(), static_cast<std::size_t>(facet.count));
+    const std::size_t corner = k * static_cast<std::size_t>(facet.count) /
+                               std::min<std::size_t>(tracker_.feet.size(), static_cast<std::size_t>(facet.count));
     CoreTracker& foot = tracker_.feet[k];
     foot.c_F = facet.corners[corner].p;
     foot.warm = true;
@@ -218,8 +228,8 @@ class PadQuery {
 
 }  // namespace
 
-FingerContacts queryPad(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker,
-                        PatchCache& cache) {
+FingerContacts queryPad(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin,
+                        FingerTracker& tracker, PatchCache& cache) {
   return PadQuery(shape, finger, X_BF, margin, tracker, cache).run();
 }
 

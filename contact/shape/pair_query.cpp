@@ -24,7 +24,8 @@ double radiusOf(const Sphere& s) { return s.radius; }
 double radiusOf(const Box& b) { return b.half.norm(); }
 double radiusOf(const Capsule& c) { return c.radius + c.half_length; }
 double radiusOf(const Cylinder& c) { return std::sqrt(c.radius * c.radius + c.half_length * c.half_length); }
-double radiusOf(const CylinderWithFlat& c) { return radiusOf(Cylinder{c.radius, c.half_length}); }  // the round part reaches as far
+// the round part reaches as far
+double radiusOf(const CylinderWithFlat& c) { return radiusOf(Cylinder{c.radius, c.half_length}); }
 double radiusOf(const HalfSpace&) { return kUnbounded; }
 double radiusOf(const Dish&) { return kUnbounded; }
 double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
@@ -32,7 +33,9 @@ double radiusOf(const Convex& c) { return c.hull->boundingRadius(); }
 
 bool isSphere(const Shape& shape) { return std::holds_alternative<Sphere>(shape); }
 bool isMesh(const Shape& shape) { return std::holds_alternative<Mesh>(shape); }
-bool isSupport(const Shape& shape) { return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape); }
+bool isSupport(const Shape& shape) {
+  return std::holds_alternative<HalfSpace>(shape) || std::holds_alternative<Dish>(shape);
+}
 
 void addPoint(const PairPoint& point, PairPoints& out) {
   PINCER_ASSERT(out.count < kMaxPairPoints);
@@ -41,8 +44,10 @@ void addPoint(const PairPoint& point, PairPoints& out) {
 
 // n out of the support.
 template <class Support>
-void collideWithSupport(const Shape& solid, const SolidFrame& A, const Support& support, double margin, PairPoints& out) {
-  if (isMesh(solid) && !(support.gap(Vec3::Zero()) - boundingRadius(solid) < margin)) return;  // the others have 12 points at most
+void collideWithSupport(const Shape& solid, const SolidFrame& A, const Support& support, double margin,
+                        PairPoints& out) {
+  // the others have 12 points at most
+  if (isMesh(solid) && !(support.gap(Vec3::Zero()) - boundingRadius(solid) < margin)) return;
   ExtremePointStore store;
   const ExtremePoints extreme = extremePoints(solid, support.steepest(), store);
   const PointChoice choice(extreme, support, margin);
@@ -54,9 +59,11 @@ void collideWithSupport(const Shape& solid, const SolidFrame& A, const Support& 
   }
 }
 
-void collideWithSupport(const Shape& solid, const Pose& X_WA, const Shape& support, const Pose& X_WB, double margin, PairPoints& out) {
+void collideWithSupport(const Shape& solid, const Pose& X_WA, const Shape& support, const Pose& X_WB, double margin,
+                        PairPoints& out) {
   const SolidFrame A(X_WA);
-  if (const auto* dish = std::get_if<Dish>(&support)) return collideWithSupport(solid, A, BowlSupport(*dish, X_WB, A), margin, out);
+  if (const auto* dish = std::get_if<Dish>(&support))
+    return collideWithSupport(solid, A, BowlSupport(*dish, X_WB, A), margin, out);
   collideWithSupport(solid, A, PlaneSupport(HalfSpace{}, X_WB, A), margin, out);
 }
 
@@ -78,11 +85,14 @@ void addWithin(double margin, const PairPoint& point, PairPoints& out) {
 }
 
 // n out of b.
-void collideSphere(const Sphere& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out) {
-  if (const auto* sphere = std::get_if<Sphere>(&b)) return addWithin(margin, betweenSpheres(a, X_WA.p, *sphere, X_WB), out);
+void collideSphere(const Sphere& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
+                   PatchCache& cache, PairPoints& out) {
+  if (const auto* sphere = std::get_if<Sphere>(&b))
+    return addWithin(margin, betweenSpheres(a, X_WA.p, *sphere, X_WB), out);
   if (std::holds_alternative<HalfSpace>(b)) return addWithin(margin, onPlane(a, X_WA.p, X_WB), out);
   const Vec3 p_BC = X_WB.q.conjugate() * (X_WA.p - X_WB.p);
-  if (isMesh(b) && !(lowerBoundOfGap(b, p_BC, a.radius) < margin)) return;  // a closed form costs no more than its bound
+  // a closed form costs no more than its bound
+  if (isMesh(b) && !(lowerBoundOfGap(b, p_BC, a.radius) < margin)) return;
   SurfaceTracker whole_mesh;
   const SurfaceContact s = querySphere(b, p_BC, a.radius, margin, whole_mesh, cache).main();
   addWithin(margin, {X_WB * (s.p_BS + 0.5 * s.phi * s.n_B), X_WB.q * s.n_B, s.phi, 0}, out);
@@ -105,15 +115,17 @@ void preparePair(const Shape& a, const Shape& b) {
   }
 }
 
-void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache, PairPoints& out,
-                   const Vec3& last_n_W) {
+void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache,
+                   PairPoints& out, const Vec3& last_n_W) {
   out.count = 0;
   if (isSupport(a) && isSupport(b)) return;
   PINCER_ASSERT(isUnitIfFinite(X_WA.q) && isUnitIfFinite(X_WB.q));
   PINCER_ASSERT(!(margin < 0));
   if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, cache, out);
-  if (isConvex(a) && isConvex(b) && !isSphere(b) && a.index() <= b.index()) return collideConvex(a, X_WA, b, X_WB, margin, last_n_W, out);
-  if (isMesh(a) && isConvex(b) && !isSphere(b)) return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, cache, out);
+  if (isConvex(a) && isConvex(b) && !isSphere(b) && a.index() <= b.index())
+    return collideConvex(a, X_WA, b, X_WB, margin, last_n_W, out);
+  if (isMesh(a) && isConvex(b) && !isSphere(b))
+    return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, cache, out);
   if (isMesh(a) && isMesh(b)) return collideMeshes(std::get<Mesh>(a), X_WA, std::get<Mesh>(b), X_WB, margin, out);
   if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, out);
   collideShapes(b, X_WB, a, X_WA, margin, cache, out, -last_n_W);

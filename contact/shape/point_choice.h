@@ -1,19 +1,21 @@
-// point_choice: up to four of a solid's extreme points, those that carry it on a support now or will first when it rocks.
+// point_choice: up to four of a solid's extreme points, those that carry it on a
+// support now or will first when it rocks.
 //
-// Up to four points within the margin are all kept. Of more, first the deepest; then, again and again, that outside the polygon of those
-// already kept which has the
+// Up to four points within the margin are all kept. Of more, first the deepest; then, again and again, that outside the
+// polygon of those already kept which has the
 //
-//   largest  d^2 / (g + s)     d  how far the point is outside that polygon, seen along the normal n at the first point [m]
+//   largest  d^2 / (g + s)     d  how far the point is outside that polygon, seen
+//                                 along the normal n at the first point [m]
 //                              g  its gap less the deepest's [m], s = 1 um the difference that counts as none
 //
-// d^2 / 2 g is the radius on which the solid would roll onto that point: flat comes before round. A body at rest keeps the corners of the
-// facet that it rests on, even where they are close together, and corners that are open join where these leave room. Among equally deep ones
-// the widest spread wins. (Rejected: d - 2 g takes far, open corners in place of near, carrying ones, and the body falls from one set of
-// corners to the next for ever; d / (g + s) favours the low side of a tilted face so much that its far side is missing when it lands.
-// Six or eight points: meshes came to rest no sooner, and the solver paid.)
-// A score must be better by a hundredth to win over a smaller feature: the points of a resting body don't change with round-off.
-// Cost: one scan over all points and four over those within the margin. More than 256 of these are not listed (no memory is allocated) but
-// found again by each scan.
+// d^2 / 2 g is the radius on which the solid would roll onto that point: flat comes before round. A body at rest keeps
+// the corners of the facet that it rests on, even where they are close together, and corners that are open join where
+// these leave room. Among equally deep ones the widest spread wins. (Rejected: d - 2 g takes far, open corners in place
+// of near, carrying ones, and the body falls from one set of corners to the next for ever; d / (g + s) favours the low
+// side of a tilted face so much that its far side is missing when it lands. Six or eight points: meshes came to rest no
+// sooner, and the solver paid.) A score must be better by a hundredth to win over a smaller feature: the points of a
+// resting body don't change with round-off. Cost: one scan over all points and four over those within the margin. More
+// than 256 of these are not listed (no memory is allocated) but found again by each scan.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -37,7 +39,8 @@ struct Chosen {
 template <class Support>
 class PointChoice {
  public:
-  PointChoice(const ExtremePoints& solid, const Support& support, double margin) : solid_(solid), support_(support), margin_(margin) {
+  PointChoice(const ExtremePoints& solid, const Support& support, double margin)
+      : solid_(solid), support_(support), margin_(margin) {
     listNear();
     near_count_ <= kMaxChosen ? keepAll() : keepBest();
   }
@@ -77,7 +80,8 @@ class PointChoice {
 
   template <class Visit>
   void forEachNear(Visit visit) const {
-    if (near_count_ <= kListed) return static_cast<void>(std::for_each(near_.begin(), near_.begin() + near_count_, visit));
+    if (near_count_ <= kListed)
+      return static_cast<void>(std::for_each(near_.begin(), near_.begin() + near_count_, visit));
     for (int i = 0; i < candidates(); ++i) {
       const double gap = gapOf(i);
       if (gap < margin_) visit(Chosen{i, gap});
@@ -92,7 +96,8 @@ class PointChoice {
   void keepBest() {
     keepDeepest();
     while (count_ < kMaxChosen && keepNext()) continue;
-    std::sort(chosen_.begin(), chosen_.begin() + count_, [](const Chosen& a, const Chosen& b) { return a.index < b.index; });
+    std::sort(chosen_.begin(), chosen_.begin() + count_,
+              [](const Chosen& a, const Chosen& b) { return a.index < b.index; });
   }
 
   void keepDeepest() {

@@ -33,15 +33,18 @@ double sizeOf(const std::vector<Vec3>& points) {
 
 void requirePoints(const std::vector<Vec3>& points, const std::string& source) {
   if (points.size() < 4)
-    throw InputError(fmt::format("{}: {} points make no solid. A convex solid needs at least 4, not in one plane.", source, points.size()));
+    throw InputError(fmt::format("{}: {} points make no solid. A convex solid needs at least 4, not in one plane.",
+                                 source, points.size()));
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].allFinite()) throw InputError(fmt::format("{}: point {} isn't finite. Give numbers in metres.", source, i));
+    if (!points[i].allFinite())
+      throw InputError(fmt::format("{}: point {} isn't finite. Give numbers in metres.", source, i));
   }
 }
 
 [[noreturn]] void rejectFlat(const std::string& source) {
-  throw InputError(
-      fmt::format("{}: all points lie in one plane (or nearly so), and their hull has no volume. Add points off that plane.", source));
+  throw InputError(fmt::format(
+      "{}: all points lie in one plane (or nearly so), and their hull has no volume. Add points off that plane.",
+      source));
 }
 
 using HalfEdges = std::map<std::pair<int, int>, int>;  // from, to -> facet
@@ -65,13 +68,15 @@ int thirdCorner(const HullFacet& f, int a, int b) {
 double heightOf(const std::vector<Vec3>& p, const HullFacet& f) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k)
-    longest = std::max(longest, (p[static_cast<std::size_t>(f[(k + 1) % 3])] - p[static_cast<std::size_t>(f[k])]).norm());
+    longest =
+        std::max(longest, (p[static_cast<std::size_t>(f[(k + 1) % 3])] - p[static_cast<std::size_t>(f[k])]).norm());
   return longest > 0 ? normalOf(p, f).norm() / longest : 0;
 }
 
-// Facets that lie in one plane are one face: judged by the larger of two neighbours. A sliver has no direction of its own, and would join
-// the faces on either side of it: it goes to the one across its longest side.
-std::vector<int> groupsOf(const std::vector<Vec3>& points, const std::vector<HullFacet>& facets, const HalfEdges& edges, double flat) {
+// Facets that lie in one plane are one face: judged by the larger of two neighbours. A sliver has no direction of its
+// own, and would join the faces on either side of it: it goes to the one across its longest side.
+std::vector<int> groupsOf(const std::vector<Vec3>& points, const std::vector<HullFacet>& facets, const HalfEdges& edges,
+                          double flat) {
   UnionFind groups(facets.size());
   const auto at = [&](int v) -> const Vec3& { return points[static_cast<std::size_t>(v)]; };
   std::vector<bool> sliver(facets.size());
@@ -103,7 +108,8 @@ std::vector<int> groupsOf(const std::vector<Vec3>& points, const std::vector<Hul
 }
 
 // The border of a group of facets, as a loop.
-std::vector<int> borderOf(const std::vector<HullFacet>& facets, const std::vector<int>& group, int which, const HalfEdges& edges) {
+std::vector<int> borderOf(const std::vector<HullFacet>& facets, const std::vector<int>& group, int which,
+                          const HalfEdges& edges) {
   std::map<int, int> next;
   for (std::size_t f = 0; f < facets.size(); ++f) {
     if (group[f] != which) continue;
@@ -136,7 +142,8 @@ std::shared_ptr<const Polytope> Polytope::hullOf(const std::vector<Vec3>& points
 Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
   const double flat = kFlat * sizeOf(points);
   const std::vector<HullFacet> facets = quickHull(points);
-  // A finely rounded solid may have facets that lie in one plane pair by pair and not as a whole: then less is taken for one plane.
+  // A finely rounded solid may have facets that lie in one plane pair by pair and not as a
+  // whole: then less is taken for one plane.
   double one_plane = flat;
   for (int tries = 1;; ++tries, one_plane *= 0.1) {
     vertices_ = points;
@@ -148,8 +155,8 @@ Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
     }
   }
   if (vertices_.size() > kMaxVertices)
-    throw InputError(
-        fmt::format("{}: the hull has {} corners, more than {}. Use fewer points, or a mesh.", source, vertices_.size(), kMaxVertices));
+    throw InputError(fmt::format("{}: the hull has {} corners, more than {}. Use fewer points, or a mesh.", source,
+                                 vertices_.size(), kMaxVertices));
   setEdges(source);
   PINCER_ASSERT(vertices_.size() + faces_.size() == edges_.size() + 2);  // Euler
   setSurroundings();
@@ -204,7 +211,8 @@ void Polytope::setFaces(const std::vector<HullFacet>& facets, double flat, const
     const std::span<const int> corners = cornersOf(face);
     const Vec3& p0 = vertices_[static_cast<std::size_t>(corners[0])];
     for (std::size_t k = 1; k + 1 < corners.size(); ++k) {
-      face.n += (vertices_[static_cast<std::size_t>(corners[k])] - p0).cross(vertices_[static_cast<std::size_t>(corners[k + 1])] - p0);
+      face.n += (vertices_[static_cast<std::size_t>(corners[k])] - p0)
+                    .cross(vertices_[static_cast<std::size_t>(corners[k + 1])] - p0);
     }
     if (!(face.n.norm() > 0)) rejectFlat(source);
     face.n.normalize();
@@ -230,8 +238,10 @@ void Polytope::setEdges(const std::string& source) {
     const auto other = place.find({ends.second, ends.first});
     if (other == place.end()) rejectFlat(source);
     if (ends.first > ends.second) continue;
-    loop_edges_[static_cast<std::size_t>(at)] = loop_edges_[static_cast<std::size_t>(other->second)] = static_cast<int>(edges_.size());
-    edges_.push_back({ends.first, ends.second, face_at[static_cast<std::size_t>(at)], face_at[static_cast<std::size_t>(other->second)]});
+    loop_edges_[static_cast<std::size_t>(at)] = loop_edges_[static_cast<std::size_t>(other->second)] =
+        static_cast<int>(edges_.size());
+    edges_.push_back({ends.first, ends.second, face_at[static_cast<std::size_t>(at)],
+                      face_at[static_cast<std::size_t>(other->second)]});
   }
 }
 

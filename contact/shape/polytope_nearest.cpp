@@ -1,4 +1,5 @@
-// Nearest point of a convex hull: within, on the nearest face; outside, on the nearest of the faces that look at the point.
+// Nearest point of a convex hull: within, on the nearest face; outside, on the
+// nearest of the faces that look at the point.
 #include <limits>
 
 #include "pincer/contact/polytope.h"

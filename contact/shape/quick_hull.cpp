@@ -75,7 +75,8 @@ class QuickHull {
     if (d < 0) return false;
     int first = b;
     if (n.dot(at(d) - at(a)) > 0) std::swap(first, c);
-    const std::array<int, 4> facets = {addFacet(a, first, c), addFacet(a, d, first), addFacet(first, d, c), addFacet(c, d, a)};
+    const std::array<int, 4> facets = {addFacet(a, first, c), addFacet(a, d, first), addFacet(first, d, c),
+                                       addFacet(c, d, a)};
     std::vector<int> all;
     for (int i = 0; i < static_cast<int>(points_.size()); ++i) all.push_back(i);
     share(all, {facets.begin(), facets.end()});
@@ -96,7 +97,8 @@ class QuickHull {
   void addFurthest(int f) {
     const std::vector<int>& outside = facet(f).outside;
     PINCER_ASSERT(facet(f).alive && !outside.empty());
-    const int p = *std::max_element(outside.begin(), outside.end(), [&](int x, int y) { return above(f, x) < above(f, y); });
+    const int p =
+        *std::max_element(outside.begin(), outside.end(), [&](int x, int y) { return above(f, x) < above(f, y); });
     std::vector<int> seen = {f};
     std::vector<std::pair<int, int>> border;
     facet(f).alive = false;

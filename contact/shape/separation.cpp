@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kGapRounding = 1e-13;  // of the size: round-off
 constexpr double kTrustedGap = 1e-8;    // of the size: solids that are apart by more have nearest points to trust
-constexpr double kTrustedRound = 1e-3;  // the same for round ones, whose nearest points take the more steps the nearer they are
-constexpr double kMovedApart = 1e-2;    // of the size
+// the same for round ones, whose nearest points take the more steps the nearer they are
+constexpr double kTrustedRound = 1e-3;
+constexpr double kMovedApart = 1e-2;  // of the size
 
 // Kinks of gap: normals of faces, edges.
 struct Kinks {
@@ -25,7 +26,8 @@ struct Kinks {
 
 class Search {
  public:
-  Search(const PosedSolid& a, const PosedSolid& b, double size) : a_(a), b_(b), size_(size), round_(isRound(a.shape) || isRound(b.shape)) {}
+  Search(const PosedSolid& a, const PosedSolid& b, double size)
+      : a_(a), b_(b), size_(size), round_(isRound(a.shape) || isRound(b.shape)) {}
 
   const Separation& best() const { return best_; }
   bool isApart() const { return best_.gap > (round_ ? kTrustedRound : kTrustedGap) * size_; }
@@ -104,8 +106,8 @@ class Search {
   static constexpr double kNear = 0.02;       // kinks to be looked at [rad]
   static constexpr double kWider = 4;         // than the overlap is deep: a disc that proves something
 
-  // A disc in A - B about the point below the origin, across the way out [m]: no direction within 90 degrees of its normal has a greater gap than
-  // its own, if it is wide enough.
+  // A disc in A - B about the point below the origin, across the way out [m]: no direction within 90 degrees of its
+  // normal has a greater gap than its own, if it is wide enough.
   struct SeenDisc {
     double radius = 0, gap = -std::numeric_limits<double>::infinity();
   };
@@ -132,8 +134,8 @@ class Search {
     if (!isProved()) lookAround();
     return isProved();
   }
-  // The disc about the foot of the one solid's deepest corner within the other's face: A - B has the face there, moved by the corner. Half of what
-  // lookAround costs, for faces with corners whose normal is the best direction.
+  // The disc about the foot of the one solid's deepest corner within the other's face: A - B has the face there, moved
+  // by the corner. Half of what lookAround costs, for faces with corners whose normal is the best direction.
   void lookAtFaces() {
     lookAtFace(b_, best_.n, a_.support(-best_.n));
     if (!isProved()) lookAtFace(a_, -best_.n, b_.support(best_.n));
@@ -154,11 +156,13 @@ class Search {
     }
     if (radius > seen_.radius) seen_ = {radius, best_.gap};
   }
-  // The disc that four points of A - B span in the plane across the best direction, furthest along four directions in that plane.
+  // The disc that four points of A - B span in the plane across the best direction,
+  // furthest along four directions in that plane.
   void lookAround() {
-    constexpr double kTurn = 1e-11;                                // towards each [rad]
-    constexpr double kFlat = 1e-10;                                // of the size: how far the points may be out of the plane
-    constexpr double kCosine = 0.92, kSine = 0.39191835884530846;  // off the axes of the frame, along which edges often lie
+    constexpr double kTurn = 1e-11;  // towards each [rad]
+    constexpr double kFlat = 1e-10;  // of the size: how far the points may be out of the plane
+    // off the axes of the frame, along which edges often lie
+    constexpr double kCosine = 0.92, kSine = 0.39191835884530846;
     const Mat3 F = frameFromNormal(best_.n);
     std::array<Vec2, 4> corners;
     Vec2 towards(kCosine, kSine);
@@ -178,14 +182,17 @@ class Search {
     if (std::isfinite(radius) && radius > seen_.radius) seen_ = {radius, best_.gap};
   }
   // True if the disc shows that nothing around the best is better by more than round-off.
-  bool isProved() const { return seen_.radius > kWider * std::max(-best_.gap, 0.0) && best_.gap > seen_.gap - 4 * kGapRounding * size_; }
+  bool isProved() const {
+    return seen_.radius > kWider * std::max(-best_.gap, 0.0) && best_.gap > seen_.gap - 4 * kGapRounding * size_;
+  }
 
   void offerBoth(const Vec3& n) {
     offer(n);
     offer(-n);
   }
 
-  // Wins over a direction that is better by round-off only: what lies flat on a face has the face's normal, to the last bit.
+  // Wins over a direction that is better by round-off only: what lies flat on a
+  // face has the face's normal, to the last bit.
   void prefer(const Vec3& n) {
     const double gap = gapAlong(a_, b_, n);
     if (gap > best_.gap - kGapRounding * size_) best_ = {n, gap};
@@ -197,7 +204,8 @@ class Search {
     for (int i = 0; i < kinks.normal_count; ++i) prefer(kinks.normals[static_cast<std::size_t>(i)]);
   }
 
-  // Again where that leads away: of a corner that all but meets a rim the gap hardly changes over most of a quarter turn, to a kink at its end.
+  // Again where that leads away: of a corner that all but meets a rim the gap hardly changes over most
+  // of a quarter turn, to a kink at its end.
   void polish() {
     constexpr int kMostRounds = 4;
     for (int i = 0; i < kMostRounds; ++i) {
@@ -209,7 +217,8 @@ class Search {
   void polishAround() {
     const Kinks kinks = kinksNear(best_.n, kNear, kNear);
     for (int i = 0; i < kinks.normal_count; ++i) prefer(kinks.normals[static_cast<std::size_t>(i)]);
-    if (best_.gap > 0) offer(directionOf<Vec3>(a_.support(-best_.n) - b_.support(best_.n), best_.n).n);  // where two corners are nearest
+    // where two corners are nearest
+    if (best_.gap > 0) offer(directionOf<Vec3>(a_.support(-best_.n) - b_.support(best_.n), best_.n).n);
     climbFrom(best_.n, nullptr);
     for (int i = 0; i < kinks.edge_count_a; ++i) climbBeside(kinks.edges_a[static_cast<std::size_t>(i)]);
     for (int j = 0; j < kinks.edge_count_b; ++j) climbBeside(kinks.edges_b[static_cast<std::size_t>(j)]);
@@ -239,11 +248,13 @@ class Search {
     Kinks kinks;
     Strata strata;
     strata.with_edges = to_circle > 0;
-    const auto collect = [&](const PosedSolid& solid, double sign, std::array<Vec3, Strata::kMost>& edges, int& edge_count) {
+    const auto collect = [&](const PosedSolid& solid, double sign, std::array<Vec3, Strata::kMost>& edges,
+                             int& edge_count) {
       strataOf(solid.shape, solid.inwards(sign * n), strata);
       for (int i = 0; i < strata.normal_count; ++i) {
         const Vec3 normal = sign * solid.outwards(strata.normals[static_cast<std::size_t>(i)]);
-        if ((normal - n).squaredNorm() < to_normal * to_normal) kinks.normals[static_cast<std::size_t>(kinks.normal_count++)] = normal;
+        if ((normal - n).squaredNorm() < to_normal * to_normal)
+          kinks.normals[static_cast<std::size_t>(kinks.normal_count++)] = normal;
       }
       for (int i = 0; i < strata.edge_count; ++i) {
         const Vec3 edge = solid.outwards(strata.edges[static_cast<std::size_t>(i)]);
@@ -259,8 +270,8 @@ class Search {
     return isRound(s.shape) ? Mat3(s.R * bendOf(s.shape, s.inwards(d)) * s.R.transpose()) : Mat3(Mat3::Zero());
   }
 
-  // Newton on the sphere (edge: null) or on the circle across an edge; leaves where the gap has no maximum of that kind. The gap tells the
-  // direction to the root of round-off only, so that the last steps are judged by their length.
+  // Newton on the sphere (edge: null) or on the circle across an edge; leaves where the gap has no maximum of that
+  // kind. The gap tells the direction to the root of round-off only, so that the last steps are judged by their length.
   void climbFrom(Vec3 n, const Vec3* edge) {
     constexpr int kMostSteps = 20, kMostHalvings = 6;
     constexpr double kSmallest = 1e-14;  // [rad]
@@ -297,15 +308,16 @@ class Search {
     }
     const Mat3 F = frameFromNormal(n);
     const Vec2 gt(F.col(0).dot(g), F.col(1).dot(g));
-    const double m00 = F.col(0).dot(H * F.col(0)) + gap, m01 = F.col(0).dot(H * F.col(1)), m11 = F.col(1).dot(H * F.col(1)) + gap;
+    const double m00 = F.col(0).dot(H * F.col(0)) + gap, m01 = F.col(0).dot(H * F.col(1)),
+                 m11 = F.col(1).dot(H * F.col(1)) + gap;
     const double det = m00 * m11 - m01 * m01;
-    const Vec2 step =
-        det > 0 && m00 > 0 ? Vec2(m11 * gt.x() - m01 * gt.y(), m00 * gt.y() - m01 * gt.x()) / det : stepUphill(m00, m01, m11, gt);
+    const Vec2 step = det > 0 && m00 > 0 ? Vec2(m11 * gt.x() - m01 * gt.y(), m00 * gt.y() - m01 * gt.x()) / det
+                                         : stepUphill(m00, m01, m11, gt);
     return F.leftCols<2>() * step;
   }
 
-  // Newton's step along the directions in which the gap is concave, as far uphill as one goes at most along the others: along the first it may
-  // be narrow as a rim's bend, and nearly flat along the other.
+  // Newton's step along the directions in which the gap is concave, as far uphill as one goes at most along the others:
+  // along the first it may be narrow as a rim's bend, and nearly flat along the other.
   static Vec2 stepUphill(double m00, double m01, double m11, const Vec2& g) {
     const double mean = 0.5 * (m00 + m11), half = 0.5 * (m00 - m11), root = std::sqrt(half * half + m01 * m01);
     const Vec2 v = directionOf<Vec2>(half > 0 ? Vec2(half + root, m01) : Vec2(m01, root - half), Vec2::UnitX()).n;

@@ -20,7 +20,9 @@ class CoreShape final : public btConvexInternalShape {
     const Vec3 p = per_size_ * supportOf(shape_, direction);
     return {p.x(), p.y(), p.z()};
   }
-  btVector3 localGetSupportingVertex(const btVector3& d) const override { return localGetSupportingVertexWithoutMargin(d); }
+  btVector3 localGetSupportingVertex(const btVector3& d) const override {
+    return localGetSupportingVertexWithoutMargin(d);
+  }
   void batchedUnitVectorGetSupportingVertexWithoutMargin(const btVector3* d, btVector3* out, int count) const override {
     for (int i = 0; i < count; ++i) out[i] = localGetSupportingVertexWithoutMargin(d[i]);
   }
@@ -48,7 +50,8 @@ DirectionGuess guessWayOut(const PosedSolid& a, const PosedSolid& b, double size
   const btVector3 start(between.x(), between.y(), between.z());  // start and answer are in the frame of a
   const CoreShape core_a(a.shape, size), core_b(b.shape, size);
   btGjkEpaSolver2::sResults results;
-  const bool found = btGjkEpaSolver2::Penetration(&core_a, transformOf(a, size), &core_b, transformOf(b, size), start, results, false);
+  const bool found =
+      btGjkEpaSolver2::Penetration(&core_a, transformOf(a, size), &core_b, transformOf(b, size), start, results, false);
   const Vec3 n = vectorOf(results.normal);
   if (!found || !n.allFinite() || !(n.squaredNorm() > 0.5)) return {};
   return {a.outwards(n.normalized()), true};

@@ -152,13 +152,15 @@ void nameApart(FoundPoints& points) {
 
 }  // namespace
 
-void leadToSurface(const SurfaceNet& net, PatchCache& cache, const PosedSolid& solid, double size, double margin, FoundPoints& points) {
+void leadToSurface(const SurfaceNet& net, PatchCache& cache, const PosedSolid& solid, double size, double margin,
+                   FoundPoints& points) {
   const SmoothLead leader(net, cache, solid, size);
   FoundPoints led;
   const auto add = [&](const FoundPoint& point) {
     if (!(point.phi < margin)) return;
     const auto is_same = [&](const FoundPoint& other) {
-      return (other.p_W - point.p_W).squaredNorm() < kOnePoint * kOnePoint * size * size && other.n_W.dot(point.n_W) > kLikeNormals;
+      return (other.p_W - point.p_W).squaredNorm() < kOnePoint * kOnePoint * size * size &&
+             other.n_W.dot(point.n_W) > kLikeNormals;
     };
     FoundPoint* const end = led.points.data() + led.count;
     FoundPoint* const known = std::find_if(led.points.data(), end, is_same);

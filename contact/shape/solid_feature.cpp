@@ -20,7 +20,8 @@ Vec3 nearestOnSegment(const Vec3& from, const Vec3& to, const Vec3& p) {
 
 }  // namespace
 
-SolidFeature::SolidFeature(const Shape& shape, const Vec3& c, const Vec3& d, double skin, double lift, double slack) : rho_(skin) {
+SolidFeature::SolidFeature(const Shape& shape, const Vec3& c, const Vec3& d, double skin, double lift, double slack)
+    : rho_(skin) {
   PINCER_ASSERT(isUnitIfFinite(d) && lift > 0);
   facetOf(shape, d, face_);
   if (const auto* cut = std::get_if<CylinderWithFlat>(&shape)) flat_ = cut->flat_distance;
@@ -68,7 +69,8 @@ void SolidFeature::setOnPolygon(const Vec3& c, double lift, double slack) {
   circle_ = face_.rim_radius;
   for (int i = 0; i < face_.count; ++i) {
     if (!face_.isStraight(i)) continue;
-    const FacetCorner &a = face_.corners[static_cast<std::size_t>(i)], &b = face_.corners[static_cast<std::size_t>((i + 1) % face_.count)];
+    const FacetCorner &a = face_.corners[static_cast<std::size_t>(i)],
+                      &b = face_.corners[static_cast<std::size_t>((i + 1) % face_.count)];
     const Vec3 inwards = face_.n.cross(b.p - a.p).normalized();
     if (!(inwards.dot(c - a.p) < slack)) continue;
     const double length = (b.p - a.p).norm(), along = length * shareOf(a.p, b.p, c);
@@ -122,7 +124,8 @@ Vec3 SolidFeature::nearestOfFace(const Vec3& p) const {
   double least2 = kInfinity;
   for (int i = 0; i < face_.count; ++i) {
     if (!face_.isStraight(i)) continue;
-    const Vec3 &a = face_.corners[static_cast<std::size_t>(i)].p, &b = face_.corners[static_cast<std::size_t>((i + 1) % face_.count)].p;
+    const Vec3 &a = face_.corners[static_cast<std::size_t>(i)].p,
+               &b = face_.corners[static_cast<std::size_t>((i + 1) % face_.count)].p;
     is_inside = is_inside && face_.n.cross(b - a).dot(best - a) >= 0;
     const Vec3 s = nearestOnSegment(a, b, best);
     if ((s - best).squaredNorm() < least2) least2 = (s - best).squaredNorm(), on_side = s;
@@ -136,7 +139,8 @@ bool SolidFeature::isEnd(const Vec3& c, double slack) const {
   if (circle_ > 0 && c.head<2>().norm() > circle_ - slack) return true;
   for (int i = 0; i < face_.count; ++i) {
     if (!face_.isStraight(i)) continue;
-    const Vec3 &a = face_.corners[static_cast<std::size_t>(i)].p, &b = face_.corners[static_cast<std::size_t>((i + 1) % face_.count)].p;
+    const Vec3 &a = face_.corners[static_cast<std::size_t>(i)].p,
+               &b = face_.corners[static_cast<std::size_t>((i + 1) % face_.count)].p;
     if (face_.n.cross(b - a).normalized().dot(c - a) < slack) return true;
   }
   return false;

@@ -1,6 +1,7 @@
 // solid_feature: the corner, straight edge, round rim, face or core line of a convex solid at which it is touched.
 //
-//   F  a convex set of points of the solid, or a rim's circle;   contact is at the ball of radius rho about the point c of F
+//   F  a convex set of points of the solid, or a rim's circle;   contact is at the ball of radius
+//                                                                rho about the point c of F
 //
 //   | touched at | F | rho |
 //   |---|---|---|
@@ -50,10 +51,11 @@ class SolidFeature {
   Vec3 nearestOfFace(const Vec3& p) const;
 
   Kind kind_ = Kind::point;
-  Vec3 from_ = Vec3::Zero(), to_ = Vec3::Zero();  // of a segment; `from_` also a point, and the middle of a circle about z
-  double circle_ = 0;                             // radius of the circle [m]
-  double flat_ = kInfinity;                       // x where a flat cuts the circle off [m]
-  double rho_, lift_ = 0;                         // [m]
+  // of a segment; `from_` also a point, and the middle of a circle about z
+  Vec3 from_ = Vec3::Zero(), to_ = Vec3::Zero();
+  double circle_ = 0;        // radius of the circle [m]
+  double flat_ = kInfinity;  // x where a flat cuts the circle off [m]
+  double rho_, lift_ = 0;    // [m]
   std::uint32_t name_ = 0;
   Facet face_;  // moved in
 };

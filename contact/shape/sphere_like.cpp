@@ -19,7 +19,9 @@ NearestPoint nearestPoint(const Capsule& capsule, const Vec3& p_BC) {
   return {p_BA + capsule.radius * n, n, length - capsule.radius};
 }
 
-NearestPoint nearestPoint(const HalfSpace&, const Vec3& p_BC) { return {{p_BC.x(), p_BC.y(), 0}, Vec3::UnitZ(), p_BC.z()}; }
+NearestPoint nearestPoint(const HalfSpace&, const Vec3& p_BC) {
+  return {{p_BC.x(), p_BC.y(), 0}, Vec3::UnitZ(), p_BC.z()};
+}
 
 NearestPoint nearestPoint(const Dish& dish, const Vec3& p_BC) {
   PINCER_ASSERT(dish.radius > 0);

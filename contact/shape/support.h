@@ -3,10 +3,11 @@
 //   plane  gap(p) = n . p - d                         n_A unit normal out of the support, d [m]
 //   bowl   gap(p) = R - |p - m|,  n = (m - p)/|m - p|  m_A centre of curvature [m], R radius [m]
 //
-// Both gaps are concave and fall by at most 1 m per m: a convex solid is nearest to either at one of its extreme points (vertices, rims,
-// ends), and no nearer than gap(origin) - bounding radius.
-//   steepest()  the direction in A's xy-plane in which the gap falls fastest, times that rate (at the solid's axis; bowl: seen from m) [-];
-//               of a circle about A's z axis the point in that direction is the deepest, exactly, for both
+// Both gaps are concave and fall by at most 1 m per m: a convex solid is nearest to either at one of its extreme points
+// (vertices, rims, ends), and no nearer than gap(origin) - bounding radius.
+//   steepest()  the direction in A's xy-plane in which the gap falls fastest, times that rate (at the
+//               solid's axis; bowl: seen from m) [-]; of a circle about A's z axis the point in that
+//               direction is the deepest, exactly, for both
 #pragma once
 #include "pincer/contact/math.h"
 #include "pincer/contact/shape.h"
@@ -14,7 +15,8 @@
 
 namespace pincer::contact {
 
-// Frame A with the rotation as a matrix: it turns more than two vectors per pair, where a matrix is cheaper than the quaternion.
+// Frame A with the rotation as a matrix: it turns more than two vectors per pair, where
+// a matrix is cheaper than the quaternion.
 struct SolidFrame {
   Mat3 R_WA;
   Vec3 p_WA;

@@ -37,10 +37,11 @@ void AabbTree::split(std::size_t node, std::int32_t begin, std::int32_t end, con
   int axis = 0;
   (centres.high - centres.low).maxCoeff(&axis);
   const std::int32_t middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](std::int32_t a, std::int32_t b) {
-    const double ca = centre(a)[axis], cb = centre(b)[axis];
-    return ca < cb || (ca == cb && a < b);
-  });
+  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
+                   [&](std::int32_t a, std::int32_t b) {
+                     const double ca = centre(a)[axis], cb = centre(b)[axis];
+                     return ca < cb || (ca == cb && a < b);
+                   });
   const std::size_t left = nodes_.size();
   nodes_[node].left = static_cast<std::int32_t>(left);
   nodes_.resize(left + 2);

@@ -1,7 +1,7 @@
 // aabb_tree: boxes in a binary tree, for finding the ones that meet a box or are near a point.
 //
-// Built top-down: each node splits its items at the median along the axis on which their centres spread most, so the depth is the
-// logarithm of their number. Node bounds are kept in single precision, rounded outwards.
+// Built top-down: each node splits its items at the median along the axis on which their centres spread most, so the
+// depth is the logarithm of their number. Node bounds are kept in single precision, rounded outwards.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -26,13 +26,13 @@ class AabbTree {
   const std::vector<std::int32_t>& order() const { return order_; }
   std::size_t memoryBytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(order_[0]); }
 
-  // Calls visit(i), for places i of `order`, on every item of the leaves whose box meets [low, high], in increasing order. Stops after
-  // `max_visits` items. Allocates nothing.
+  // Calls visit(i), for places i of `order`, on every item of the leaves whose box meets [low, high], in increasing
+  // order. Stops after `max_visits` items. Allocates nothing.
   template <class Visit>
   void visitBox(const Vec3& low, const Vec3& high, int max_visits, Visit&& visit) const;
 
-  // Calls visit(i) on the items of all leaves nearer to `p` than sqrt(bound2), nearer leaves first; `bound2` [m^2] may shrink meanwhile.
-  // Allocates nothing.
+  // Calls visit(i) on the items of all leaves nearer to `p` than sqrt(bound2), nearer leaves first; `bound2` [m^2]
+  // may shrink meanwhile. Allocates nothing.
   template <class Visit>
   void visitNear(const Vec3& p, const double& bound2, Visit&& visit) const;
 
@@ -122,7 +122,8 @@ void AabbTree::visitNear(const Vec3& p, const double& bound2, Visit&& visit) con
     const std::size_t before = size;
     push(node.left + 1);
     push(node.left);
-    if (size == before + 2 && stack[before].distance2 < stack[before + 1].distance2) std::swap(stack[before], stack[before + 1]);
+    if (size == before + 2 && stack[before].distance2 < stack[before + 1].distance2)
+      std::swap(stack[before], stack[before + 1]);
   }
 }
 

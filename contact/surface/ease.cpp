@@ -52,8 +52,9 @@ bool EasedContacts::continues(const SurfaceSlot& kept, const ShellContact& conta
 }
 
 bool EasedContacts::isListed(const ShellContact& contact) const {
-  return isAny(
-      [&](const FollowedContact& other) { return (ball_.placeOf(other.contact) - ball_.placeOf(contact)).norm() < kOnePlace * ball_.r; });
+  return isAny([&](const FollowedContact& other) {
+    return (ball_.placeOf(other.contact) - ball_.placeOf(contact)).norm() < kOnePlace * ball_.r;
+  });
 }
 
 double EasedContacts::nearestHeight() const {
@@ -69,7 +70,9 @@ double EasedContacts::heightToYield() const {
 }
 
 // Its overlap begins at zero, but for the way that the finger can have come closer.
-void EasedContacts::addNew(const ShellContact& contact) { list_.push_back({contact, takeSlot(), true, false, easeOfNew(contact)}); }
+void EasedContacts::addNew(const ShellContact& contact) {
+  list_.push_back({contact, takeSlot(), true, false, easeOfNew(contact)});
+}
 
 double EasedContacts::easeOfNew(const ShellContact& contact) const {
   return ball_.eases && had_contacts_ ? std::max(0.0, ball_.r - contact.h - ball_.moved) : 0;
@@ -168,7 +171,8 @@ void EasedContacts::answer(SurfaceContacts& found, std::uint32_t& status) {
     stays[static_cast<std::size_t>(f.slot)] = true;
     slotAt(f.slot) = {c.foot.triangle, f.fades, c.foot.b[1], c.foot.b[2], f.ease, S, c.n, c.motion.du, c.motion.dv};
     if (found.count > 0 && f.shown() >= ball_.shown) continue;
-    found.points[static_cast<std::size_t>(found.count++)] = {S, c.n, f.shown() - ball_.r, static_cast<std::uint32_t>(f.slot)};
+    found.points[static_cast<std::size_t>(found.count++)] = {S, c.n, f.shown() - ball_.r,
+                                                             static_cast<std::uint32_t>(f.slot)};
   }
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
     if (!stays[static_cast<std::size_t>(slot)] && kept(slot).triangle >= 0) slotAt(slot) = {};

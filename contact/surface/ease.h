@@ -53,7 +53,8 @@ class EasedContacts {
  public:
   using List = ShortList<FollowedContact, kMaxSurfaceContacts>;
 
-  EasedContacts(const TouchingBall& ball, std::array<SurfaceSlot, kMaxSurfaceContacts>& slots) : ball_(ball), slots_(slots) {}
+  EasedContacts(const TouchingBall& ball, std::array<SurfaceSlot, kMaxSurfaceContacts>& slots)
+      : ball_(ball), slots_(slots) {}
 
   // What the slots' contacts have become. Each slot in use is told of once, then settle(). Not converged is lost.
   void moveOn(int slot, const ShellContact& contact);

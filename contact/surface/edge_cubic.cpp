@@ -4,8 +4,9 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kParallel = 0.05;  // |nA x nB| below which the sides' cross product has no reliable direction: 3 degrees
-constexpr double kSteepest = 0.3;   // T.g of a handle that still leads along the edge
+// |nA x nB| below which the sides' cross product has no reliable direction: 3 degrees
+constexpr double kParallel = 0.05;
+constexpr double kSteepest = 0.3;  // T.g of a handle that still leads along the edge
 
 // Unit tangent of a crease at one of its ends, along `g`.
 Vec3 creaseTangent(const EdgeEnd& end, const Vec3& g) {
@@ -41,7 +42,8 @@ Vec3 middleNormalWithout(const Vec3&, const Vec3&, const Vec3& n0, const Vec3& n
 }
 
 VecPair middleNormalWithout(const VecPair& p0, const VecPair& p1, const VecPair& n0, const VecPair& n1) {
-  return {middleNormal(p0.first(), p1.first(), n0.first(), n1.first()), middleNormal(p0.second(), p1.second(), n0.second(), n1.second())};
+  return {middleNormal(p0.first(), p1.first(), n0.first(), n1.first()),
+          middleNormal(p0.second(), p1.second(), n0.second(), n1.second())};
 }
 
 }  // namespace pincer::contact

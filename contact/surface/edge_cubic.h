@@ -1,15 +1,18 @@
 // edge_cubic: the curve that stands for one mesh edge, from what both its triangles know of it.
 //
-//   smooth edge, normals N0, N1 at its ends:   V1 = P0 + c / 3 - 2 rho N0 + sigma N1,   V2 = P1 - c / 3 - rho N0 + 2 sigma N1
-//     c = P1 - P0, a = N0.N1, a0 = N0.c, a1 = N1.c, rho = (2 a0 + a a1) / (3 (4 - a^2)), sigma = (2 a1 + a a0) / (3 (4 - a^2))
+//   smooth edge, normals N0, N1 at its ends:   V1 = P0 + c / 3 - 2 rho N0 + sigma N1,
+//                                              V2 = P1 - c / 3 - rho N0 + 2 sigma N1
+//     c = P1 - P0, a = N0.N1, a0 = N0.c, a1 = N1.c, rho = (2 a0 + a a1) / (3 (4 -
+//     a^2)), sigma = (2 a1 + a a0) / (3 (4 - a^2))
 //   crease, normals nA, nB of its two sides:   V = P + 2 d T / (3 (1 + T.g)),   T = +- (nA x nB) / |nA x nB|,  T.g >= 0
 //     (the handle of a circular arc); at an end where nA = nB, T is the tangent there, g less its part along n.
 //     d = |c|, g = c / d
 //
 //   P0, P1  ends, V1, V2  inner control points of the cubic [m]; frame B
 //
-// Both sides of an edge get the same curve, so there is no gap between patches. Source: D. Walton, D. Meek, "A triangular G1 patch from
-// boundary curves", Computer-Aided Design 28(2), 1996, eqs. 3-6. The crease rule is ours: with each side's own normals gaps of 0.04 to
+// Both sides of an edge get the same curve, so there is no gap between patches. Source: D. Walton, D. Meek, "A
+// triangular G1 patch from boundary curves", Computer-Aided Design 28(2), 1996, eqs. 3-6. The crease rule is ours:
+// with each side's own normals gaps of 0.04 to
 // 0.3 mm opened on hand-sized objects.
 #pragma once
 #include <array>
@@ -60,11 +63,12 @@ inline bool canMirror(Two chord2, Two sum2) { return canMirror(chord2[0], sum2[0
 
 // Where one of them can't: the mean as it is, or the first end's. The fold check reports such edges.
 [[gnu::noinline, gnu::cold]] Vec3 middleNormalWithout(const Vec3& p0, const Vec3& p1, const Vec3& n0, const Vec3& n1);
-[[gnu::noinline, gnu::cold]] VecPair middleNormalWithout(const VecPair& p0, const VecPair& p1, const VecPair& n0, const VecPair& n1);
+[[gnu::noinline, gnu::cold]] VecPair middleNormalWithout(const VecPair& p0, const VecPair& p1, const VecPair& n0,
+                                                         const VecPair& n1);
 
-// The quadratic normal's middle control point on an edge from `p0` to `p1`, for two edges as VecPairs: the mean of the end normals, mirrored
-// in the plane across the edge's middle, which keeps its length. Source: T. van Overveld, B. Wyvill, 1997; Vlachos et al., eq. 5. Changing
-// the ends' roles gives the same bits.
+// The quadratic normal's middle control point on an edge from `p0` to `p1`, for two edges as VecPairs: the mean of the
+// end normals, mirrored in the plane across the edge's middle, which keeps its length. Source: T. van Overveld, B.
+// Wyvill, 1997; Vlachos et al., eq. 5. Changing the ends' roles gives the same bits.
 template <class Vec>
 [[gnu::flatten]] inline Vec middleNormal(const Vec& p0, const Vec& p1, const Vec& n0, const Vec& n1) {
   const Vec c = p1 - p0, sum = n0 + n1;

@@ -46,7 +46,8 @@ FacingTree::FacingTree(const std::vector<FacingBox>& boxes, const std::function<
   PINCER_ASSERT(!boxes.empty());
   std::iota(order_.begin(), order_.end(), 0);
   for (const FacingBox& box : boxes) {
-    for (std::size_t k = 0; k < 3; ++k) extent_ = std::max<double>({extent_, std::abs(box.low[k]), std::abs(box.high[k])});
+    for (std::size_t k = 0; k < 3; ++k)
+      extent_ = std::max<double>({extent_, std::abs(box.low[k]), std::abs(box.high[k])});
   }
   nodes_.reserve(boxes.size() / kLanes / 2 + 1);
   nodes_.emplace_back();
@@ -60,7 +61,8 @@ std::int32_t FacingTree::halve(Range range, std::int32_t child, const std::vecto
   const std::int32_t children = (range.end - range.begin + child - 1) / child;
   if (children <= 1) return range.end;
   const auto box = [&](std::int32_t item) -> const FacingBox& { return boxes[static_cast<std::size_t>(item)]; };
-  const auto begin = order_.begin() + range.begin, end = order_.begin() + range.end, middle = begin + child * (children / 2);
+  const auto begin = order_.begin() + range.begin, end = order_.begin() + range.end,
+             middle = begin + child * (children / 2);
   std::array<float, 3> first, last;
   for (std::size_t k = 0; k < 3; ++k) first[k] = last[k] = twiceCentre(box(*begin), k);
   for (auto i = begin; i != end; ++i) {
@@ -91,15 +93,18 @@ FacingTree::Bounds FacingTree::boundsOfLeaf(Range range, const std::vector<Facin
 FacingTree::Bounds FacingTree::build(std::size_t node, Range range, const std::vector<FacingBox>& boxes) {
   const std::int32_t child_size = kLanes * leavesOfChild((range.end - range.begin + kLanes - 1) / kLanes);
   const std::int32_t middle = halve(range, child_size, boxes);
-  const std::int32_t first = halve({range.begin, middle}, child_size, boxes), last = halve({middle, range.end}, child_size, boxes);
-  const std::array<Range, kLanes> ranges{Range{range.begin, first}, Range{first, middle}, Range{middle, last}, Range{last, range.end}};
+  const std::int32_t first = halve({range.begin, middle}, child_size, boxes),
+                     last = halve({middle, range.end}, child_size, boxes);
+  const std::array<Range, kLanes> ranges{Range{range.begin, first}, Range{first, middle}, Range{middle, last},
+                                         Range{last, range.end}};
   PINCER_ASSERT(range.begin <= first && first <= middle && middle <= last && last <= range.end);
   FacingBox all{};
   for (int lane = 0; lane < kLanes; ++lane) {
     const auto i = static_cast<std::size_t>(lane);
     const auto [begin, end] = ranges[i];
     Bounds bounds{{{kInsideOut, kInsideOut, kInsideOut}, {-kInsideOut, -kInsideOut, -kInsideOut}, {}, 0}, 0};
-    std::int32_t child = kFirstLeaf;  // of an empty lane: only a point that is no number gets there, and must find something
+    // of an empty lane: only a point that is no number gets there, and must find something
+    std::int32_t child = kFirstLeaf;
     if (end > begin) child = kFirstLeaf - begin / kLanes;
     if (end - begin > kLanes) {
       child = static_cast<std::int32_t>(nodes_.size());
@@ -121,7 +126,8 @@ FacingTree::Bounds FacingTree::build(std::size_t node, Range range, const std::v
     at.child[i] = child;
   }
   constexpr std::int32_t kReported = 4096;  // every item is in few nodes of more than this
-  if (progress_ && range.end - range.begin >= kReported) progress_(static_cast<double>(range.end) / static_cast<double>(boxes.size()));
+  if (progress_ && range.end - range.begin >= kReported)
+    progress_(static_cast<double>(range.end) / static_cast<double>(boxes.size()));
   return {all, ballRadius(all)};
 }
 

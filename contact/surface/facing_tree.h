@@ -1,8 +1,9 @@
-// facing_tree: boxes with normal cones in a tree, for finding the parts of a surface that are near a point and may face it.
+// facing_tree: boxes with normal cones in a tree, for finding the parts of a
+// surface that are near a point and may face it.
 //
-// Each node holds the bounds of its up to four children side by side (four_lanes.h): one visit tests all of them. Built top-down: items are
-// split at the median along the axis on which their centres spread most, so that leaves of four are full and the depth is the logarithm of
-// their number. Bounds are kept in single precision, rounded outwards.
+// Each node holds the bounds of its up to four children side by side (four_lanes.h): one visit tests all of them. Built
+// top-down: items are split at the median along the axis on which their centres spread most, so that leaves of four are
+// full and the depth is the logarithm of their number. Bounds are kept in single precision, rounded outwards.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -24,7 +25,8 @@ struct FacingBox {
   float hollow = 0;  // the largest concave curvature [1/m]
 };
 
-// Which parts are looked for: those whose normal may point to the point searched from, or also those that have it straight behind them.
+// Which parts are looked for: those whose normal may point to the point searched from, or also
+// those that have it straight behind them.
 enum class Facing : std::uint8_t { front, both };
 
 class FacingTree {
@@ -33,17 +35,21 @@ class FacingTree {
   // Requires at least one box. `progress` is told the share of the work done.
   FacingTree(const std::vector<FacingBox>& boxes, const std::function<void(double)>& progress);
 
-  // The boxes' numbers in the order of the tree's leaves: leaf i has those at the places 4 i to 4 i + 3, the last one fewer if need be.
+  // The boxes' numbers in the order of the tree's leaves: leaf i has those at the places 4 i
+  // to 4 i + 3, the last one fewer if need be.
   const std::vector<std::int32_t>& order() const { return order_; }
-  std::size_t memoryBytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::int32_t); }
+  std::size_t memoryBytes() const {
+    return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::int32_t);
+  }
 
-  // Calls visit(leaf) on all leaves that are nearer to `p` than sqrt(bound2) and may face it, nearer ones first; `bound2` [m^2] may shrink
-  // meanwhile. Stops once visit returns false. Allocates nothing.
+  // Calls visit(leaf) on all leaves that are nearer to `p` than sqrt(bound2) and may face it, nearer ones first;
+  // `bound2` [m^2] may shrink meanwhile. Stops once visit returns false. Allocates nothing.
   template <class Visit>
   void visitFacing(const Vec3& p, const double& bound2, Facing facing, Visit&& visit) const;
 
-  // Calls visit(leaf) on all leaves that `p` may come to be nearer to than `reach` and to face before it has moved by `horizon` [m], which
-  // may shrink meanwhile; without those whose cones are `passed`. Carries `walk` on by at most `most` visits. Allocates nothing.
+  // Calls visit(leaf) on all leaves that `p` may come to be nearer to than `reach` and to face before it has
+  // moved by `horizon` [m], which may shrink meanwhile; without those whose cones are `passed`. Carries `walk` on
+  // by at most `most` visits. Allocates nothing.
   template <class Visit>
   void visitNear(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk, int most,
                  Visit&& visit) const;
@@ -52,7 +58,8 @@ class FacingTree {
   template <class Visit>
   void visitInBox(const Vec3& low, const Vec3& high, Visit&& visit) const;
 
-  // Calls visit(leaf) on all leaves for which, and for all that holds them, test(Children) is true, until it returns false.
+  // Calls visit(leaf) on all leaves for which, and for all that holds them,
+  // test(Children) is true, until it returns false.
   template <class Test, class Visit>
   void visitWhere(Test&& test, Visit&& visit) const {
     TreeWalk walk;
@@ -73,7 +80,9 @@ class FacingTree {
       Lanes box2, centre2, along;
     };
     Distances distancesFrom(const LanesPoint& p, Lanes widening) const;
-    std::array<Lanes, 3> centre() const { return {0.5f * (low[0] + high[0]), 0.5f * (low[1] + high[1]), 0.5f * (low[2] + high[2])}; }
+    std::array<Lanes, 3> centre() const {
+      return {0.5f * (low[0] + high[0]), 0.5f * (low[1] + high[1]), 0.5f * (low[2] + high[2])};
+    }
   };
 
   // Largest error of single precision in a distance to `p`, and some more [m].
@@ -165,15 +174,16 @@ void FacingTree::walkWhere(TreeWalk& walk, int most, Test&& test, Visit&& visit)
 }
 
 template <class Visit>
-void FacingTree::visitNear(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk, int most,
-                           Visit&& visit) const {
+void FacingTree::visitNear(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk,
+                           int most, Visit&& visit) const {
   const LanesPoint x(p);
   const double rounded = rounding(p);
   const Lanes widening = LanesPoint::toLanes(rounded);
   const auto comesNear = [&](const Children& c) {
     const auto d = c.distancesFrom(x, widening);
     const Lanes outer = LanesPoint::toLanes(reach + horizon + rounded);
-    return (d.box2 < outer * outer) & c.cones.mayFace(d.along, d.centre2, c.radius + LanesPoint::toLanes(horizon + rounded)) &
+    return (d.box2 < outer * outer) &
+           c.cones.mayFace(d.along, d.centre2, c.radius + LanesPoint::toLanes(horizon + rounded)) &
            ~passed.hold(c.cones);
   };
   walkWhere(walk, most, comesNear, [&](std::int32_t leaf) {

@@ -15,7 +15,9 @@ constexpr double kOnFeature = 1e-8;  // of the mesh's size: nearer to a border's
 
 class FlatWalk {
  public:
-  FlatWalk(const SurfaceNet& net, const Vec3& C, const Foot& start) : net_(net), C_(C), start_(start) { moveTo(start.triangle); }
+  FlatWalk(const SurfaceNet& net, const Vec3& C, const Foot& start) : net_(net), C_(C), start_(start) {
+    moveTo(start.triangle);
+  }
 
   ShellContact run() {
     while (crossings_ < kMaxFacets) {
@@ -93,8 +95,8 @@ ShellContact FlatWalk::on(std::int32_t triangle, const Vec3& n) const {
 }
 
 ShellContact FlatWalk::rolledOver(const Vec3& outward) const {
-  const Vec3 p =
-      nearest_.b[0] * net_.vertex(triangle_, 0) + nearest_.b[1] * net_.vertex(triangle_, 1) + nearest_.b[2] * net_.vertex(triangle_, 2);
+  const Vec3 p = nearest_.b[0] * net_.vertex(triangle_, 0) + nearest_.b[1] * net_.vertex(triangle_, 1) +
+                 nearest_.b[2] * net_.vertex(triangle_, 2);
   const FeatureContact contact = contactWithPoint(C_, p, outward, true, kOnFeature * net_.length());
   return {{triangle_, nearest_.b}, contact.n, contact.h, true, {1, crossings_}};
 }
@@ -137,7 +139,9 @@ ShellContact FlatWalk::onVertex(int corner) const {
 
 }  // namespace
 
-ShellContact followFlat(const SurfaceNet& net, const Vec3& C, const Foot& start) { return FlatWalk(net, C, start).run(); }
+ShellContact followFlat(const SurfaceNet& net, const Vec3& C, const Foot& start) {
+  return FlatWalk(net, C, start).run();
+}
 
 void shadeForce(const SurfaceNet& net, const SurfaceTracker& tracker, SurfaceContacts& contacts) {
   constexpr double kSame = 1e-9;  // 1 - cosine to the facet's normal, which a rolled-over border has lost

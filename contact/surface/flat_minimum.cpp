@@ -21,7 +21,8 @@ bool isMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& 
   bool is_least = true;
   Vec3 outward = Vec3::Zero();
   const bool is_border = net.visitCorners(at, [&](const CellCorner& c) {
-    for (const int other : {(c.corner + 1) % 3, (c.corner + 2) % 3}) is_least = is_least && R.dot(net.vertex(c.triangle, other) - p) <= 0;
+    for (const int other : {(c.corner + 1) % 3, (c.corner + 2) % 3})
+      is_least = is_least && R.dot(net.vertex(c.triangle, other) - p) <= 0;
     outward += net.normal(c.triangle, c.corner);
     return is_least;
   });
@@ -97,7 +98,8 @@ FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec
     least = std::min(least, over_edge[i]);
   }
   for (int i = 0; i < 3; ++i) {
-    if (over_corner[static_cast<std::size_t>(i)] < least) least = std::min(least, wayToMinimumAtVertex(net, {t, i}, p, least));
+    if (over_corner[static_cast<std::size_t>(i)] < least)
+      least = std::min(least, wayToMinimumAtVertex(net, {t, i}, p, least));
   }
   return least;
 }

@@ -1,7 +1,8 @@
-// flat_minimum: the place of a flat triangle nearest to a point, and whether the whole flat mesh is no nearer around it.
+// flat_minimum: the place of a flat triangle nearest to a point, and whether
+// the whole flat mesh is no nearer around it.
 //
-// A smooth surface's local minima of the distance lie near those of its triangles; these take a few products to find and no patch.
-// Source of the closest point: C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
+// A smooth surface's local minima of the distance lie near those of its triangles; these take a few products to find
+// and no patch. Source of the closest point: C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5.
 #pragma once
 #include <array>
 
@@ -17,12 +18,14 @@ struct FlatPoint {
 FlatPoint closestOnTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p);
 FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec3& p);
 
-// True if no triangle beside this place leads nearer to `p`, and `p` is in front of it. `flat` is the triangle's closest point.
+// True if no triangle beside this place leads nearer to `p`, and `p` is in front of
+// it. `flat` is the triangle's closest point.
 bool isFlatMinimum(const SurfaceNet& net, std::int32_t triangle, const FlatPoint& flat, const Vec3& p);
 
 // How far `p` has to move at least until the triangle has such a place [m]; 0 if it has one.
-//   The places over which a triangle has one: over its inside, between its edges' side planes; over an edge, before the neighbour's side
-//   plane and between the ends; over a vertex, behind the planes across all edges there. Each plane's distance bounds the way to its region.
+//   The places over which a triangle has one: over its inside, between its edges' side planes; over an edge, before
+//   the neighbour's side plane and between the ends; over a vertex, behind the planes across all edges there. Each
+//   plane's distance bounds the way to its region.
 double wayToFlatMinimum(const SurfaceNet& net, std::int32_t triangle, const Vec3& p);
 
 }  // namespace pincer::contact

@@ -29,13 +29,15 @@ ShellContact followSlot(const FeltSurface& surface, const Vec3& C, double r, con
   return follow(surface, C, r, start);
 }
 
-bool isFarSide(const FeltSurface& surface, const Vec3& C, double r, const SurfaceSlot& from, const ShellContact& contact) {
+bool isFarSide(const FeltSurface& surface, const Vec3& C, double r, const SurfaceSlot& from,
+               const ShellContact& contact) {
   constexpr double kWellAbove = 0.25;  // of r
   return contact.h < 0 && tangentContact(surface.net, surface.cache, C, footOf(from)).h > kWellAbove * r;
 }
 
 ShellContact straightTo(const FeltSurface& surface, const Vec3& C, const SurfaceSeed& seed) {
-  const PatchPoint x = evaluate(surface.net.cell(seed.foot.triangle, surface.cache).patch, seed.foot.b[1], seed.foot.b[2]);
+  const PatchPoint x =
+      evaluate(surface.net.cell(seed.foot.triangle, surface.cache).patch, seed.foot.b[1], seed.foot.b[2]);
   const double sign = (C - x.S).dot(x.N) < 0 ? -1 : 1;
   return {seed.foot, sign / seed.distance * (C - x.S), sign * seed.distance, seed.distance > 0, {}};
 }
@@ -45,8 +47,10 @@ namespace {
 bool isOnBorder(const SurfaceNet& net, const Foot& foot) {
   constexpr double kOn = 1e-12;  // of a barycentric coordinate
   for (int i = 0; i < 3; ++i) {
-    if (foot.b[static_cast<std::size_t>((i + 2) % 3)] < kOn && net.neighbour(foot.triangle, i).triangle < 0) return true;
-    if (foot.b[static_cast<std::size_t>(i)] > 1 - kOn && net.visitCorners({foot.triangle, i}, [](const CellCorner&) {})) return true;
+    if (foot.b[static_cast<std::size_t>((i + 2) % 3)] < kOn && net.neighbour(foot.triangle, i).triangle < 0)
+      return true;
+    if (foot.b[static_cast<std::size_t>(i)] > 1 - kOn && net.visitCorners({foot.triangle, i}, [](const CellCorner&) {}))
+      return true;
   }
   return false;
 }

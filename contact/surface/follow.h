@@ -31,7 +31,8 @@ ShellContact follow(const FeltSurface& surface, const Vec3& C, double r, const F
 ShellContact followSlot(const FeltSurface& surface, const Vec3& C, double r, const Vec3& dC, const SurfaceSlot& slot);
 
 // True if `contact`, under the surface, was come to from well above it: there the equation has solutions too.
-bool isFarSide(const FeltSurface& surface, const Vec3& C, double r, const SurfaceSlot& from, const ShellContact& contact);
+bool isFarSide(const FeltSurface& surface, const Vec3& C, double r, const SurfaceSlot& from,
+               const ShellContact& contact);
 
 // Contact with the place that a search found, whatever the normal there.
 ShellContact straightTo(const FeltSurface& surface, const Vec3& C, const SurfaceSeed& seed);

@@ -1,7 +1,7 @@
 // four_lanes: four boxes or balls with normal cones side by side, tested at once in single precision.
 //
-// The tests are those of normal_cone.h without square roots. Rounding is covered by what every distance is widened by (`widening`) and by
-// kShare of every square, so that what the tests in double precision hold, these hold too.
+// The tests are those of normal_cone.h without square roots. Rounding is covered by what every distance is widened by
+// (`widening`) and by kShare of every square, so that what the tests in double precision hold, these hold too.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,12 +1,14 @@
-// large_pages: asks the system to keep an array in pages of 2 MB instead of 4 KB. Where queries read it here and there, as on a mesh of a
-// million triangles, most of such a read was the walk through the page table to find it. What the system grants changes no answer.
+// large_pages: asks the system to keep an array in pages of 2 MB instead of 4 KB. Where queries read it here and
+// there, as on a mesh of a million triangles, most of such a read was the walk through the page table to find it.
+// What the system grants changes no answer.
 #pragma once
 #include <cstddef>
 #include <vector>
 
 namespace pincer::contact {
 
-// Asks for large pages under the memory that lies there now, as far as it fills whole ones; takes some 5 ms per MB. Memory that isn't granted is left as it is.
+// Asks for large pages under the memory that lies there now, as far as it fills whole ones; takes some 5 ms per MB.
+// Memory that isn't granted is left as it is.
 void preferLargePages(const void* begin, std::size_t bytes);
 
 template <class T>

@@ -45,7 +45,8 @@ void LoneContact::show(const PatchBounds& part) {
   const Vec3 D = C_ - part.middle();
   const double up = D.dot(n_), distance2 = D.squaredNorm(), across = std::sqrt(std::max(0.0, distance2 - up * up));
   double way = std::min<double>(way_, part.approach(C_, reach_));
-  if (isBeside(across, up, distance2, part.radius)) way = std::min(way, std::max(0.0, across - part.radius - reach_ * kSinBeta));
+  if (isBeside(across, up, distance2, part.radius))
+    way = std::min(way, std::max(0.0, across - part.radius - reach_ * kSinBeta));
   if (way < way_) setWay(way);
 }
 

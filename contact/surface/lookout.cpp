@@ -4,8 +4,8 @@
 
 namespace pincer::contact {
 
-Lookout::Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, double turn, EasedContacts& contacts,
-                 SurfaceTracker& tracker, QueryCost& cost)
+Lookout::Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, double turn,
+                 EasedContacts& contacts, SurfaceTracker& tracker, QueryCost& cost)
     : surface_(surface),
       search_(search),
       ball_(ball),
@@ -34,8 +34,8 @@ void Lookout::findLost() {
     return c.converged && c.n.dot(plane.n) > 0 && std::abs(c.h - plane.h) < kSameDepth * ball_.r;
   };
   lookOut();
-  const auto* const beside =
-      std::find_if(contacts_.list().begin(), contacts_.list().end(), [&](const FollowedContact& f) { return isSameSide(f.contact); });
+  const auto* const beside = std::find_if(contacts_.list().begin(), contacts_.list().end(),
+                                          [&](const FollowedContact& f) { return isSameSide(f.contact); });
   ShellContact found;
   if (beside != contacts_.list().end()) found = beside->contact;
   contacts_.clear();

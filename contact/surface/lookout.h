@@ -31,8 +31,8 @@ namespace pincer::contact {
 class Lookout {
  public:
   // `turn` is w [m], 0: no turns are waited for.
-  Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, double turn, EasedContacts& contacts,
-          SurfaceTracker& tracker, QueryCost& cost);
+  Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, double turn,
+          EasedContacts& contacts, SurfaceTracker& tracker, QueryCost& cost);
 
   // True if nothing can be met beside one contact that is followed alone, as far as is known without it; with its
   // normal `n`: in all.
@@ -47,7 +47,8 @@ class Lookout {
   void end();
 
  private:
-  static constexpr int kMaxTries = 16;  // places that a query looks from for further contacts; the others' turn comes in the next
+  // places that a query looks from for further contacts; the others' turn comes in the next
+  static constexpr int kMaxTries = 16;
 
   // Where a try has led.
   struct TriedPlace {
@@ -61,7 +62,9 @@ class Lookout {
   void holdLost();
 
   void lookOut();
-  double wayFrom(const SurfaceLook& look) const { return (ball_.C - look.p_BC).norm() + std::max(0.0, ball_.reach - look.reach); }
+  double wayFrom(const SurfaceLook& look) const {
+    return (ball_.C - look.p_BC).norm() + std::max(0.0, ball_.reach - look.reach);
+  }
   double goneAt(const SurfaceLook& look) const { return gone_ - wayFrom(look); }
   bool isGood(const SurfaceLook& look) const;
   template <class NormalIn>

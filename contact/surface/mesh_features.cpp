@@ -144,7 +144,8 @@ void MeshFeatures::setTrianglesAtVertices() {
 
 std::size_t MeshFeatures::memoryBytes() const {
   return owned_.capacity() + opposite_.capacity() * sizeof(opposite_[0]) + tree_.memoryBytes() + owners_.memoryBytes() +
-         (first_at_vertex_.capacity() + triangles_at_vertex_.capacity() + owner_numbers_.capacity()) * sizeof(std::int32_t);
+         (first_at_vertex_.capacity() + triangles_at_vertex_.capacity() + owner_numbers_.capacity()) *
+             sizeof(std::int32_t);
 }
 
 std::span<const std::int32_t> MeshFeatures::trianglesAt(std::int32_t v) const {

@@ -1,13 +1,14 @@
-// mesh_features: the flat triangles of a mesh with their corners and edges, for contact with other bodies (contact/shape/mesh_pairs.h,
-// mesh_mesh.h).
+// mesh_features: the flat triangles of a mesh with their corners and edges, for contact with other bodies
+// (contact/shape/mesh_pairs.h, mesh_mesh.h).
 //
-// Each vertex and each edge belongs to one triangle, the first that has it, so that a walk over triangles meets it once. An edge counts
-// where the surface is convex across it, a vertex where such an edge or a border ends or bends in it: no others can touch a body that the
-// triangles and edges around them don't touch, and how a flat face and its rim are cut makes no difference.
-// The signed distance of a point is that to the nearest triangle, negative where it lies behind the surface there: behind the face, or
-// where an edge or vertex is nearest, against the sum of the normals around it, each weighted by its angle.
-// Source: J. A. Baerentzen, H. Aanaes, IEEE Trans. Visualization Comput. Graphics 11(3), 2005 (those normals decide inside and outside
-// exactly); nearest point of a triangle: C. Ericson, Real-Time Collision Detection (2005), sec. 5.1.5.
+// Each vertex and each edge belongs to one triangle, the first that has it, so that a walk over triangles meets it
+// once. An edge counts where the surface is convex across it, a vertex where such an edge or a border ends or bends in
+// it: no others can touch a body that the triangles and edges around them don't touch, and how a flat face and its rim
+// are cut makes no difference. The signed distance of a point is that to the nearest triangle, negative where it lies
+// behind the surface there: behind the face, or where an edge or vertex is nearest, against the sum of the normals
+// around it, each weighted by its angle. Source: J. A. Baerentzen, H. Aanaes, IEEE Trans. Visualization Comput.
+// Graphics 11(3), 2005 (those normals decide inside and outside exactly); nearest point of a triangle: C. Ericson,
+// Real-Time Collision Detection (2005), sec. 5.1.5.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -30,7 +31,8 @@ class MeshFeatures {
     std::array<Vec3, 3> p;                 // [m]
     Vec3 n;                                // unit normal, out of the solid
     std::array<std::int32_t, 3> vertices;  // of the mesh
-    std::uint8_t owned;          // bit i: corner i belongs to it and counts; bit 3 + i: edge i, from corner i to (i + 1) mod 3, likewise
+    // bit i: corner i belongs to it and counts; bit 3 + i: edge i, from corner i to (i + 1) mod 3, likewise
+    std::uint8_t owned;
     std::array<Vec3, 3> beyond;  // per owned edge: the third corner of the triangle on its other side [m]
 
     bool ownsCorner(int i) const { return owned >> i & 1; }
@@ -56,12 +58,13 @@ class MeshFeatures {
   // The nearest point of the surface to `q` that is nearer than `bound` > 0 [m]. Allocates nothing.
   Nearest nearest(const Vec3& q, double bound) const;
 
-  // True if the surface around the vertex lies above the plane through it across the unit vector `n`, but for directions that fall by less
-  // than `slack` (sine).
+  // True if the surface around the vertex lies above the plane through it across the unit vector `n`, but for
+  // directions that fall by less than `slack` (sine).
   bool liesAbove(std::int32_t vertex, const Vec3& n, double slack) const;
 
   const AabbTree& tree() const { return tree_; }
-  // Of the triangles that own a corner or edge only: on a finely cut flat face there is none, and a walk over it costs nothing.
+  // Of the triangles that own a corner or edge only: on a finely cut flat face there
+  // is none, and a walk over it costs nothing.
   const AabbTree& owners() const { return owners_; }
   std::size_t memoryBytes() const;
 
@@ -81,7 +84,9 @@ class MeshFeatures {
 
  private:
   const Vec3& vertex(std::int32_t v) const { return mesh_->vertices[static_cast<std::size_t>(v)]; }
-  const std::array<std::int32_t, 3>& cornersOf(std::int32_t t) const { return mesh_->triangles[static_cast<std::size_t>(t)]; }
+  const std::array<std::int32_t, 3>& cornersOf(std::int32_t t) const {
+    return mesh_->triangles[static_cast<std::size_t>(t)];
+  }
   std::span<const std::int32_t> trianglesAt(std::int32_t v) const;
   std::vector<std::int32_t> findOwners(const Neighbours& neighbours);
   void setOwners(const Neighbours& neighbours);

@@ -16,14 +16,16 @@ constexpr double kAtOnce = 1e-300;  // a horizon that only what matters now is w
 // Keeps the nearer half; the horizon is where the others begin.
 void halve(NearParts& found) {
   std::array<float, kMostParts> approaches;
-  std::transform(found.parts.begin(), found.parts.end(), approaches.begin(), [](const NearPart& p) { return p.approach; });
+  std::transform(found.parts.begin(), found.parts.end(), approaches.begin(),
+                 [](const NearPart& p) { return p.approach; });
   const auto middle = approaches.begin() + kMostParts / 2;
   std::nth_element(approaches.begin(), middle, approaches.end());
   found.look.horizon = *middle;
   std::erase_if(found.parts, [&](const NearPart& p) { return !(p.approach < found.look.horizon); });
 }
 
-// Where too many parts matter at once (near the middle of a bowl): those where the flat mesh is nearest among its neighbours, vouched for at this place alone.
+// Where too many parts matter at once (near the middle of a bowl): those where the flat mesh is nearest among its
+// neighbours, vouched for at this place alone.
 void keepMinima(const SurfaceNet& net, const SurfaceSearch& search, double gone_at_look, NearParts& found) {
   found.look.horizon = 0;
   search.visitParts(found.look.p_BC, found.look.reach, kAtOnce, {}, [&](std::int32_t place, double) {
@@ -45,16 +47,19 @@ void beginNearParts(const SurfaceNet& net, const SurfaceLook& look, NearParts& f
   found.is_whole = false;
 }
 
-void continueNearParts(const SurfaceNet& net, const SurfaceSearch& search, double gone_at_look, int most, NearParts& found) {
+void continueNearParts(const SurfaceNet& net, const SurfaceSearch& search, double gone_at_look, int most,
+                       NearParts& found) {
   if (found.is_whole) return;
   const SurfaceLook& look = found.look;
   const ConesAlong passed(look.n);
-  search.walkParts(look.p_BC, look.reach, found.look.horizon, passed, found.walk, most, [&](std::int32_t place, double approach) {
-    if (found.parts.size() == kMostParts) halve(found);
-    PINCER_ASSERT(found.parts.size() < found.parts.capacity());  // the tick allocates nothing
-    const float rounded = below(approach);
-    if (approach < found.look.horizon) found.parts.push_back({place, rounded, gone_at_look + rounded, 0});
-  });
+  search.walkParts(look.p_BC, look.reach, found.look.horizon, passed, found.walk, most,
+                   [&](std::int32_t place, double approach) {
+                     if (found.parts.size() == kMostParts) halve(found);
+                     PINCER_ASSERT(found.parts.size() < found.parts.capacity());  // the tick allocates nothing
+                     const float rounded = below(approach);
+                     if (approach < found.look.horizon)
+                       found.parts.push_back({place, rounded, gone_at_look + rounded, 0});
+                   });
   if (!found.walk.isOver()) return;
   if (!(found.look.horizon > 0)) keepMinima(net, search, gone_at_look, found);
   found.is_whole = true;

@@ -6,10 +6,13 @@ namespace pincer::contact {
 
 namespace {
 
-// (Su x Sv) . N is positive wherever the control points' differences spread too little to turn it: most patches need no grid.
+// (Su x Sv) . N is positive wherever the control points' differences spread too
+// little to turn it: most patches need no grid.
 bool surelyFlatEnough(const Patch& p) {
-  const std::array<Vec3, 6> u = {p.b210 - p.b300, p.b120 - p.b210, p.b030 - p.b120, p.b111 - p.b201, p.b021 - p.b111, p.b012 - p.b102};
-  const std::array<Vec3, 6> v = {p.b201 - p.b300, p.b111 - p.b210, p.b021 - p.b120, p.b102 - p.b201, p.b012 - p.b111, p.b003 - p.b102};
+  const std::array<Vec3, 6> u = {p.b210 - p.b300, p.b120 - p.b210, p.b030 - p.b120,
+                                 p.b111 - p.b201, p.b021 - p.b111, p.b012 - p.b102};
+  const std::array<Vec3, 6> v = {p.b201 - p.b300, p.b111 - p.b210, p.b021 - p.b120,
+                                 p.b102 - p.b201, p.b012 - p.b111, p.b003 - p.b102};
   Vec3 u0 = Vec3::Zero(), v0 = Vec3::Zero();
   for (std::size_t i = 0; i < 6; ++i) {
     u0 += u[i] / 6;

@@ -2,11 +2,13 @@
 //
 //   cone = { n : n . a >= cos alpha |n| },   a  unit axis, alpha <= 90 degrees;  wider ones hold every direction
 //
-// A ball of radius R about m, whose surface normals lie in the cone, may have a point x with C - x along its normal only if
+// A ball of radius R about m, whose surface normals lie in the cone, may have a
+// point x with C - x along its normal only if
 //
 //   |D| <= R,   or   angle(a, D) <= alpha + asin(R / |D|),   D = C - m
 //
-// for the angle between a and C - x is at least that between a and D, less asin(R / |D|). The latter is, with a . D and what D has across a,
+// for the angle between a and C - x is at least that between a and D, less asin(R / |D|). The
+// latter is, with a . D and what D has across a,
 //
 //   cos alpha |D - (a . D) a| - sin alpha (a . D) <= R,   where angle(a, D) - alpha < 90 degrees
 // Source: D. E. Johnson, E. Cohen, "Spatialized normal cone hierarchies", I3D 2001.
@@ -48,7 +50,8 @@ inline NormalCone joined(const NormalCone& a, const NormalCone& b) {
   const Vec3 axis = sum / length;
   double cosine = 1;
   for (const NormalCone& part : {a, b}) {
-    const double c = std::clamp(axis.dot(part.axis), 0.0, 1.0);  // of half the angle between the axes, which is at most 90 degrees
+    // of half the angle between the axes, which is at most 90 degrees
+    const double c = std::clamp(axis.dot(part.axis), 0.0, 1.0);
     const double s = std::sqrt(1 - c * c), part_s = std::sqrt(std::max(0.0, 1 - part.cosine * part.cosine));
     cosine = std::min(cosine, c * part.cosine - s * part_s);
   }
@@ -63,7 +66,8 @@ struct FacingTest {
 
   FacingTest() = default;
   explicit FacingTest(const NormalCone& cone) {
-    constexpr double kRounding = 1e-6;  // of the stored axis; it covers |D|, which is at most what D has across a, along it, and R
+    // of the stored axis; it covers |D|, which is at most what D has across a, along it, and R
+    constexpr double kRounding = 1e-6;
     for (int k = 0; k < 3; ++k) axis[static_cast<std::size_t>(k)] = static_cast<float>(cone.axis[k]);
     cosine = static_cast<float>(cone.cosine - kRounding);
     sine = static_cast<float>(std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine)) + kRounding);
@@ -79,7 +83,8 @@ struct FacingTest {
   double approach(double along, double distance2, double R) const {
     if (distance2 <= R * R || isFull()) return 0;
     const double across = std::sqrt(std::max(0.0, distance2 - along * along)), distance = std::sqrt(distance2);
-    const double outside = cosine * along + sine * across > 0 ? std::min(distance, cosine * across - sine * along) : distance;
+    const double outside =
+        cosine * along + sine * across > 0 ? std::min(distance, cosine * across - sine * along) : distance;
     return std::max(0.0, outside - R);
   }
 };

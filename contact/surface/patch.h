@@ -5,8 +5,9 @@
 //   u, v, w  barycentric coordinates of corners 1, 2, 0 [-];  b_ijk [m], n_ijk [-] in frame B
 //
 // N isn't of unit length between the corners; everything that follows is indifferent to its length.
-// Source: A. Vlachos et al., "Curved PN triangles", 2001, eqs. 1 and 3; A. J. Doxon, doctoral text, 2014, eq. 6 for the factor 2 on the mixed
-// normals, which the former lacks: without it contact runs at 0.57 to 1.25 of the true speed however fine the mesh.
+// Source: A. Vlachos et al., "Curved PN triangles", 2001, eqs. 1 and 3; A. J. Doxon, doctoral text, 2014,
+// eq. 6 for the factor 2 on the mixed normals, which the former lacks: without it contact runs at 0.57 to
+// 1.25 of the true speed however fine the mesh.
 #pragma once
 #include <array>
 
@@ -30,7 +31,8 @@ struct PatchPoint {
   Vec3 Nu, Nv;  // dN/du, dN/dv [-]
 };
 
-// x and y side by side in one register, and z: the bits are those of one component at a time, at two thirds of the instructions.
+// x and y side by side in one register, and z: the bits are those of one component at a
+// time, at two thirds of the instructions.
 struct AxesXY {
   using Value = Eigen::Array2d;
   static Value of(const Vec3& v) { return v.head<2>(); }
@@ -49,8 +51,8 @@ template <class Axes>
   const double w = 1 - u - v;
   const double ww = w * w, uu = u * u, vv = v * v, wu = 2 * w * u, wv = 2 * w * v, uv = 2 * u * v;
   const auto of = [](const Vec3& a) -> Value { return Axes::of(a); };
-  const Value b210 = of(p.b210), b120 = of(p.b120), b201 = of(p.b201), b102 = of(p.b102), b021 = of(p.b021), b012 = of(p.b012),
-              b111 = of(p.b111);
+  const Value b210 = of(p.b210), b120 = of(p.b120), b201 = of(p.b201), b102 = of(p.b102), b021 = of(p.b021),
+              b012 = of(p.b012), b111 = of(p.b111);
   const Value Sw = of(p.b300) * ww + b120 * uu + b102 * vv + b210 * wu + b201 * wv + b111 * uv;
   const Value Su = b210 * ww + of(p.b030) * uu + b012 * vv + b120 * wu + b111 * wv + b021 * uv;
   const Value Sv = b201 * ww + b021 * uu + of(p.b003) * vv + b111 * wu + b102 * wv + b012 * uv;
@@ -78,7 +80,8 @@ inline Vec3 place(const Patch& p, double u, double v) {
   const double w = 1 - u - v;
   const double ww = w * w, uu = u * u, vv = v * v;
   return p.b300 * (ww * w) + p.b030 * (uu * u) + p.b003 * (vv * v) +
-         3 * (p.b210 * (ww * u) + p.b120 * (w * uu) + p.b201 * (ww * v) + p.b021 * (uu * v) + p.b102 * (w * vv) + p.b012 * (u * vv)) +
+         3 * (p.b210 * (ww * u) + p.b120 * (w * uu) + p.b201 * (ww * v) + p.b021 * (uu * v) + p.b102 * (w * vv) +
+              p.b012 * (u * vv)) +
          p.b111 * (6 * w * u * v);
 }
 

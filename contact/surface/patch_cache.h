@@ -1,7 +1,9 @@
-// patch_cache: working memory for the patches that a query touches, and for those that a finger may come to touch, built when first needed.
+// patch_cache: working memory for the patches that a query touches, and for those that a finger
+// may come to touch, built when first needed.
 //
-// Direct-mapped: a triangle has one place, and takes it from whoever was there. A cell is a pure function of its mesh, and near parts of
-// mesh and look, so no result depends on what a cache holds; several meshes may share one. Belongs to a scratch: one thread at a time.
+// Direct-mapped: a triangle has one place, and takes it from whoever was there. A cell is a pure function of its
+// mesh, and near parts of mesh and look, so no result depends on what a cache holds; several meshes may share one.
+// Belongs to a scratch: one thread at a time.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,9 +24,12 @@ class PatchCache {
     std::int32_t triangle = -1;  // -1: empty
     SurfaceCell cell;
   };
-  Place& placeOf(std::uint64_t net, std::int32_t triangle) { return places_[(static_cast<std::uint64_t>(triangle) ^ net) & last_]; }
+  Place& placeOf(std::uint64_t net, std::int32_t triangle) {
+    return places_[(static_cast<std::uint64_t>(triangle) ^ net) & last_];
+  }
 
-  // The place for what is near a finger: the same for as long as its tracker stays where it is, and another than its neighbours'.
+  // The place for what is near a finger: the same for as long as its tracker stays where
+  // it is, and another than its neighbours'.
   LookParts& partsOf(const SurfaceTracker& tracker) {
     return parts_[reinterpret_cast<std::uintptr_t>(&tracker) / sizeof(SurfaceTracker) % parts_.size()];
   }

@@ -22,9 +22,13 @@ std::array<double, 3> barycentric(const std::array<Vec3, 3>& corners, const Vec3
 }
 
 // `d` turned about edge `e` with the facet of unit normal `from` until it lies in that of `to`.
-Vec3 unfold(const Vec3& d, const Vec3& e, const Vec3& from, const Vec3& to) { return e * d.dot(e) + to.cross(e) * d.dot(from.cross(e)); }
+Vec3 unfold(const Vec3& d, const Vec3& e, const Vec3& from, const Vec3& to) {
+  return e * d.dot(e) + to.cross(e) * d.dot(from.cross(e));
+}
 
-std::array<Vec3, 3> cornersOf(const SurfaceNet& net, std::int32_t t) { return {net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2)}; }
+std::array<Vec3, 3> cornersOf(const SurfaceNet& net, std::int32_t t) {
+  return {net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2)};
+}
 
 // Moves the foot by `d` [m] along the flat triangles; stops at a border. Returns the edges crossed.
 int advance(const SurfaceNet& net, Foot& foot, Vec3 d) {

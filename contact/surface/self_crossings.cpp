@@ -23,7 +23,8 @@ int sideOf(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   constexpr double kRoundOff = 16 * std::numeric_limits<double>::epsilon();
   const Vec3 u = b - a, v = c - a, w = d - a, n = v.cross(w);
   const double volume = u.dot(n);
-  const double size = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), c.cwiseAbs().maxCoeff(), d.cwiseAbs().maxCoeff()});
+  const double size =
+      std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), c.cwiseAbs().maxCoeff(), d.cwiseAbs().maxCoeff()});
   const double edge = std::max({u.norm(), v.norm(), w.norm()});
   const double error = kRoundOff * size * edge * edge;  // each difference errs by the coordinates' round-off
   return volume > error ? 1 : volume < -error ? -1 : 0;

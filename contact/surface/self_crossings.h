@@ -1,12 +1,13 @@
 // self_crossings: where triangles of one mesh pass through each other.
 //
-// Two triangles cross if an edge of one goes through the inside of the other: its ends lie strictly on both sides of the triangle's plane, and
-// the line strictly between its corners, by the signs of the volumes
+// Two triangles cross if an edge of one goes through the inside of the other: its ends lie strictly on both sides of
+// the triangle's plane, and the line strictly between its corners, by the signs of the volumes
 //
 //   V(a,b,c,d) = (b - a) . ((c - a) x (d - a)) / 6  [m^3],  each beyond round-off.
 //
-// So triangles that only touch, share an edge or lie in one plane don't cross; neighbours at a vertex may. Vertices at one place count as
-// one. Source of the test: P. Guigue, O. Devillers, J. Graphics Tools 8(1), 2003 (the volumes' signs); of the candidates: boxes in a tree.
+// So triangles that only touch, share an edge or lie in one plane don't cross; neighbours at a vertex may. Vertices at
+// one place count as one. Source of the test: P. Guigue, O. Devillers, J. Graphics Tools 8(1), 2003 (the volumes'
+// signs); of the candidates: boxes in a tree.
 #pragma once
 #include <cstdint>
 

@@ -32,13 +32,16 @@ struct ShellContact {
   Foot foot;
   Vec3 n = Vec3::UnitZ();  // unit; C - h n is the contact point to within 1e-9 m
   double h = 0;            // [m], negative when the centre lies under the surface
-  bool converged = false;  // false: no solution within the budget of 20 steps, and `foot` is where the walk began, or where it met
+  // false: no solution within the budget of 20 steps, and `foot` is where the walk began, or where it met
+  bool converged = false;
   WalkCost cost;
   FootMotion motion = {};
   bool has_met = false;  // came into a triangle at which it was to end
 };
 
-inline Foot footOf(const SurfaceSlot& slot) { return {slot.triangle, {std::max(0.0, 1 - slot.u - slot.v), slot.u, slot.v}}; }
+inline Foot footOf(const SurfaceSlot& slot) {
+  return {slot.triangle, {std::max(0.0, 1 - slot.u - slot.v), slot.u, slot.v}};
+}
 inline bool knowsMotion(const SurfaceSlot& slot) { return slot.du != Vec3(Vec3::Zero()); }
 
 }  // namespace pincer::contact

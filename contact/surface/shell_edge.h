@@ -2,11 +2,13 @@
 //
 //   (C - E(s)) . D(s) = 0,   D = +- NL x NR + eps E' / L,   contact normal n = +- (C - E) / |C - E|
 //
-//   E(s)  the edge's cubic, 0 <= s <= 1 [m], L  its chord [m];  NL(s), NR(s)  the two sides' normals along it;  eps = 1e-3
+//   E(s)  the edge's cubic, 0 <= s <= 1 [m], L  its chord [m];  NL(s), NR(s)  the two sides'
+//                                                               normals along it;  eps = 1e-3
 //
-// The solution lies in the plane of the two normals, so that contact passes from a face to the edge and on without a jump, even where the
-// shading normals aren't quite across the curve (with D = E' it would jump by h times that error, up to 90 um on coarse meshes). The small
-// part along E' rules where NL = NR: at the smooth end of a crease, and on an open border.
+// The solution lies in the plane of the two normals, so that contact passes from a face to the edge and on
+// without a jump, even where the shading normals aren't quite across the curve (with D = E' it would jump by
+// h times that error, up to 90 um on coarse meshes). The small part along E' rules where NL = NR: at the
+// smooth end of a crease, and on an open border.
 #pragma once
 #include <array>
 
@@ -41,8 +43,8 @@ SharpEdgePoint evaluate(const SharpEdge& edge, double s);
 // Safeguarded Newton (bisection where a step leaves the bracket) from `s`.
 EdgeFoot footOnEdge(const SharpEdge& edge, const Vec3& C, double s);
 
-// The normal and signed height of `C` over a point `p` of a feature whose neighbourhood faces along `outward` (of any length). Nearer than
-// `on_feature` [m] the direction between the two is lost, and `outward` stands for it.
+// The normal and signed height of `C` over a point `p` of a feature whose neighbourhood faces along `outward` (of any
+// length). Nearer than `on_feature` [m] the direction between the two is lost, and `outward` stands for it.
 struct FeatureContact {
   Vec3 n;    // unit
   double h;  // [m]

@@ -2,9 +2,10 @@
 //
 //   J dS = T,   J = 1 + h W  in the plane across N,  W  how N turns as S moves (curvature, positive where convex) [1/m]
 //
-// Newton's step is J^-1 T. Where J isn't clearly positive (a finger about as large as the hollow that it is in), Newton would go to a
-// farthest or saddle point; then each eigenvalue of J's symmetric part counts by its size: sum q_i (q_i . T) / max(|lambda_i|, 0.2), which
-// leaves such points. Source: Y. Dauphin et al., "Identifying and attacking the saddle point problem", NIPS 2014.
+// Newton's step is J^-1 T. Where J isn't clearly positive (a finger about as large as the hollow that it is in),
+// Newton would go to a farthest or saddle point; then each eigenvalue of J's symmetric part counts by its size: sum
+// q_i (q_i . T) / max(|lambda_i|, 0.2), which leaves such points. Source: Y. Dauphin et al., "Identifying and
+// attacking the saddle point problem", NIPS 2014.
 #pragma once
 #include <array>
 
@@ -60,7 +61,8 @@ constexpr double kLeastCosine = 0.2;       // between Newton's step and T
 
 FaceStep faceStep(const PatchPoint& x, const Vec3& C, StepKind kind);
 
-// True if J is positive: a solution here is a place that the finger stays at, none that it slides away from to either side.
+// True if J is positive: a solution here is a place that the finger stays at, none
+// that it slides away from to either side.
 bool isStable(const PatchPoint& x, const Vec3& C);
 
 }  // namespace pincer::contact

@@ -10,13 +10,16 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kDone = 1e-8;      // of the surface's length: a residual that needs no further step
-constexpr double kNear = 4e-5;      // of it: a residual from which Newton's next step, squaring it, need not be looked at again
+constexpr double kDone = 1e-8;  // of the surface's length: a residual that needs no further step
+// of it: a residual from which Newton's next step, squaring it, need not be looked at again
+constexpr double kNear = 4e-5;
 constexpr double kAlong = 1e-9;     // of a step: what leads so little across an edge leads along it
 constexpr int kMaxSteps = 20;       // within faces, and visits of edges and vertices
 constexpr int kMaxCrossings = 200;  // of edges, at most one per step of a walk over fine triangles
 
-double longest(const std::array<double, 3>& db) { return std::max({std::abs(db[0]), std::abs(db[1]), std::abs(db[2])}); }
+double longest(const std::array<double, 3>& db) {
+  return std::max({std::abs(db[0]), std::abs(db[1]), std::abs(db[2])});
+}
 
 // The last step, if it stays within the face: its end is so near that the patch is as good as linear.
 [[gnu::flatten]] bool finish(const PatchPoint& x, double u, double v, const Vec3& C, ShellContact& contact) {
@@ -42,10 +45,12 @@ std::array<double, 3> coordinatesOf(const SurfaceNet& net, std::int32_t triangle
 // The edge beyond which a foot is furthest outside.
 int edgeLeft(const std::array<double, 3>& b) {
   const bool second = b[1] < b[0], third = b[2] < (second ? b[1] : b[0]);
-  return (1 + second) * !third;  // across from the corner whose coordinate is least; no branch, for nothing foretells it
+  // across from the corner whose coordinate is least; no branch, for nothing foretells it
+  return (1 + second) * !third;
 }
 
-// Carries a foot that is outside of its triangle over smooth edges into the one that it is in, as far as the flat mesh tells.
+// Carries a foot that is outside of its triangle over smooth edges into the one that
+// it is in, as far as the flat mesh tells.
 bool carryInside(const SurfaceNet& net, Foot& foot, int& crossings) {
   constexpr int kMostCrossings = 4;
   for (; std::min({foot.b[0], foot.b[1], foot.b[2]}) < 0; ++crossings) {
@@ -61,8 +66,15 @@ bool carryInside(const SurfaceNet& net, Foot& foot, int& crossings) {
 
 class ShellWalk {
  public:
-  ShellWalk(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start, std::span<const std::int32_t> ends)
-      : net_(net), cache_(cache), C_(C), ends_(ends), done_(kDone * net.length()), nearly_(kNear * net.length()), foot_(start) {
+  ShellWalk(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,
+            std::span<const std::int32_t> ends)
+      : net_(net),
+        cache_(cache),
+        C_(C),
+        ends_(ends),
+        done_(kDone * net.length()),
+        nearly_(kNear * net.length()),
+        foot_(start) {
     PINCER_ASSERT(isIndex(start.triangle, static_cast<std::size_t>(net.size())));
     result_.foot = start;
   }
@@ -188,8 +200,8 @@ void ShellWalk::meetEdge(int edge, double s) {
   near_ = false;
   const bool turned_back = entered_by_.triangle == foot_.triangle && entered_by_.edge == edge;
   if (turned_back || cell().neighbours[static_cast<std::size_t>(edge)].triangle < 0) return settleOnEdge(edge, s);
-  const bool circling =
-      (s == 0 || s == 1) && entered_by_.triangle == foot_.triangle;  // through a vertex, around which steps may lead forever
+  // through a vertex, around which steps may lead forever
+  const bool circling = (s == 0 || s == 1) && entered_by_.triangle == foot_.triangle;
   if (circling) return settleOnVertex({foot_.triangle, s == 0 ? edge : (edge + 1) % 3});
   cross(edge, s);
 }
@@ -208,7 +220,8 @@ void ShellWalk::cross(int edge, double s) {
   entered_by_ = {other.triangle, other.edge};
 }
 
-// The next step goes along the residual, which leads inside by the test that sent us here; Newton's need not on a kinked patch.
+// The next step goes along the residual, which leads inside by the test that sent us
+// here; Newton's need not on a kinked patch.
 void ShellWalk::enterFace() {
   next_kind_ = StepKind::alongResidual;
   entered_by_ = {};
@@ -233,7 +246,8 @@ void ShellWalk::settleOnEdge(int edge, double s) {
   accept(contact.n, contact.h);
 }
 
-// True if the residual leads from the edge that the foot is on into its face. By the edge's normals it may seem so where the patch is kinked.
+// True if the residual leads from the edge that the foot is on into its face. By the edge's normals
+// it may seem so where the patch is kinked.
 bool ShellWalk::leadsInside(int edge) const {
   const FaceStep step = faceStep(evaluate(cell().patch, foot_.b[1], foot_.b[2]), C_, StepKind::alongResidual);
   return step.db[static_cast<std::size_t>((edge + 2) % 3)] > 0;
@@ -245,7 +259,8 @@ void ShellWalk::settleOnVertex(const CellCorner& at) {
   if (leaveVertexIntoFace(at)) return;
   if (leaveVertexAlongEdge(at)) return;
   Vec3 outward = Vec3::Zero();
-  const bool has_border = net_.visitCorners(at, [&](const CellCorner& c) { outward += net_.normal(c.triangle, c.corner); });
+  const bool has_border =
+      net_.visitCorners(at, [&](const CellCorner& c) { outward += net_.normal(c.triangle, c.corner); });
   const Vec3& p = net_.vertex(at.triangle, at.corner);
   const FeatureContact contact = contactWithPoint(C_, p, outward, has_border, done_);
   accept(contact.n, contact.h);
@@ -259,7 +274,8 @@ bool ShellWalk::leaveVertexIntoFace(const CellCorner& at) {
     Foot foot{face.triangle, {0, 0, 0}};
     const auto c = static_cast<std::size_t>(face.corner);
     foot.b[c] = 1;
-    const FaceStep step = faceStep(evaluate(net_.cell(face.triangle, cache_).patch, foot.b[1], foot.b[2]), C_, StepKind::alongResidual);
+    const FaceStep step =
+        faceStep(evaluate(net_.cell(face.triangle, cache_).patch, foot.b[1], foot.b[2]), C_, StepKind::alongResidual);
     const double least = -kAlong * longest(step.db);
     if (step.db[(c + 1) % 3] < least || step.db[(c + 2) % 3] < least || step.residual <= largest) return;
     largest = step.residual;
@@ -303,12 +319,13 @@ void ShellWalk::accept(const Vec3& n, double h) {
 
 }  // namespace
 
-ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start, std::span<const std::int32_t> ends) {
+ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,
+                        std::span<const std::int32_t> ends) {
   return ShellWalk(net, cache, C, start, ends).run();
 }
 
-[[gnu::flatten]] ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,
-                                               const FootMotion& motion, const Vec3& dC) {
+[[gnu::flatten]] ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Vec3& C,
+                                               const Foot& start, const FootMotion& motion, const Vec3& dC) {
   ShellContact contact;
   const double du = motion.du.dot(dC), dv = motion.dv.dot(dC);
   contact.foot = {start.triangle, {start.b[0] - du - dv, start.b[1] + du, start.b[2] + dv}};
@@ -324,7 +341,8 @@ ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C,
 }
 
 ShellContact tangentContact(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& foot) {
-  const FaceStep step = faceStep(evaluate(net.cell(foot.triangle, cache).patch, foot.b[1], foot.b[2]), C, StepKind::alongResidual);
+  const FaceStep step =
+      faceStep(evaluate(net.cell(foot.triangle, cache).patch, foot.b[1], foot.b[2]), C, StepKind::alongResidual);
   return {foot, step.n, step.h, false, {}};
 }
 

@@ -67,8 +67,8 @@ SmoothMesh::~SmoothMesh() = default;
 
 std::shared_ptr<const SmoothMesh> SmoothMesh::build(TriangleMesh mesh, const SurfaceOptions& options) {
   if (!(options.crease_angle > 0 && options.crease_angle <= M_PI)) {
-    throw InputError(
-        fmt::format("{}: crease angle {} rad is out of range (0, 3.1416]; typical: 0.7 (40 degrees).", mesh.source, options.crease_angle));
+    throw InputError(fmt::format("{}: crease angle {} rad is out of range (0, 3.1416]; typical: 0.7 (40 degrees).",
+                                 mesh.source, options.crease_angle));
   }
   requireWellFormed(mesh);
   requireManifold(mesh);
@@ -78,7 +78,8 @@ std::shared_ptr<const SmoothMesh> SmoothMesh::build(TriangleMesh mesh, const Sur
   return built;
 }
 
-SurfaceContacts SmoothMesh::querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker, PatchCache& cache) const {
+SurfaceContacts SmoothMesh::querySphere(const Vec3& p_BC, double r, double margin, SurfaceTracker& tracker,
+                                        PatchCache& cache) const {
   PINCER_DEMAND(r > 0, "querySphere: the fingertip's radius is positive");
   return touchSurface({data_->variant, data_->net, cache}, data_->search, p_BC, r, margin, tracker);
 }
@@ -91,7 +92,9 @@ std::size_t SmoothMesh::memoryBytes() const {
 }
 const MeshFeatures& SmoothMesh::features() const {
   const Data& d = *data_;
-  std::call_once(d.features_wanted, [&] { d.features = std::make_unique<const MeshFeatures>(d.net.mesh(), findNeighbours(d.net.mesh())); });
+  std::call_once(d.features_wanted, [&] {
+    d.features = std::make_unique<const MeshFeatures>(d.net.mesh(), findNeighbours(d.net.mesh()));
+  });
   return *d.features;
 }
 const SurfaceNet& SmoothMesh::net() const { return data_->net; }
@@ -105,18 +108,19 @@ double SmoothMesh::tightestConcaveRadius() const { return data_->findings.concav
 std::vector<std::string> SmoothMesh::findings(double r) const {
   std::vector<std::string> findings;
   if (!data_->findings.folded.empty()) {
-    const Vec3 p =
-        1000 * data_->net.mesh()
-                   .vertices[static_cast<std::size_t>(data_->net.mesh().triangles[static_cast<std::size_t>(data_->findings.folded[0])][0])];
-    findings.push_back(fmt::format(
-        "the smooth surface folds over {} triangle(s), the first near ({:.4g}, {:.4g}, {:.4g}) mm: neighbouring normals differ too much. "
-        "Refine the mesh there, or lower the crease angle.",
-        data_->findings.folded.size(), p.x(), p.y(), p.z()));
+    const Vec3 p = 1000 * data_->net.mesh().vertices[static_cast<std::size_t>(
+                              data_->net.mesh().triangles[static_cast<std::size_t>(data_->findings.folded[0])][0])];
+    findings.push_back(
+        fmt::format("the smooth surface folds over {} triangle(s), the first near ({:.4g}, {:.4g}, {:.4g}) mm: "
+                    "neighbouring normals differ too much. "
+                    "Refine the mesh there, or lower the crease angle.",
+                    data_->findings.folded.size(), p.x(), p.y(), p.z()));
   }
   constexpr double kTightest = 0.8;  // r kappa beyond which one contact jumps between the two sides of a groove
   if (r > kTightest * data_->findings.concave_radius) {
     findings.push_back(
-        fmt::format("a finger of {:.3g} mm radius doesn't fit into the tightest hollow, of {:.3g} mm radius: contact may jump across it. "
+        fmt::format("a finger of {:.3g} mm radius doesn't fit into the tightest hollow, of {:.3g} mm radius: contact "
+                    "may jump across it. "
                     "Fill or widen such hollows.",
                     1000 * r, 1000 * data_->findings.concave_radius));
   }

@@ -1,4 +1,5 @@
-// smooth_patch: the patch over one triangle as surface_net.h makes it of SurfaceVariant::smooth, where no side is a crease.
+// smooth_patch: the patch over one triangle as surface_net.h makes it of
+// SurfaceVariant::smooth, where no side is a crease.
 #pragma once
 #include <array>
 

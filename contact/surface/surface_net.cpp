@@ -38,7 +38,8 @@ struct Middle {
   Vec M, N;
 };
 template <class Vec>
-Middle<Vec> middleOf(const Vec& p0, const Vec& p1, const Handles<Vec>& handles, const Vec& n0, const Vec& n1, const Vec& normal) {
+Middle<Vec> middleOf(const Vec& p0, const Vec& p1, const Handles<Vec>& handles, const Vec& n0, const Vec& n1,
+                     const Vec& normal) {
   return {0.125 * ((p0 + p1) + 3 * (handles.first + handles.second)), (n0 + n1) + 2 * normal};
 }
 Middle<Vec3> middleOf(const Patch& p, int i) {
@@ -70,7 +71,8 @@ Middles setSmoothEdges(Patch& p) {
   return {middleOf(p.b300, p.b030, handles, p.n200, p.n020, normal), middleOf(p0, p1, others, n0, n1, normals)};
 }
 
-// True if the triangle is the first of an edge's: as that one sees it the edge is computed, so that the two sides share it to the last bit.
+// True if the triangle is the first of an edge's: as that one sees it the edge is computed, so
+// that the two sides share it to the last bit.
 bool isFirst(std::int32_t triangle, const Neighbour& other) { return other.triangle < 0 || triangle < other.triangle; }
 
 void setSharpEdge(const SurfaceNet& net, std::int32_t triangle, int i, SurfaceCell& cell) {
@@ -114,16 +116,16 @@ void setCentre(Patch& p) {
   p.b111 = handles + (handles - (p.b300 + p.b030 + p.b003) / 3) / 2;
 }
 
-// By what the median from the corner `P` with normal `n` to the middle of the side across is bent after 2/3 of its way [m]: 27 times its
-// place there is 9 P + 18 M + 6 (5 sigma N - 4 rho n).
+// By what the median from the corner `P` with normal `n` to the middle of the side across is bent after 2/3 of its way
+// [m]: 27 times its place there is 9 P + 18 M + 6 (5 sigma N - 4 rho n).
 template <class Vec>
 Vec bendOfMedian(const Vec& P, const Vec& n, const Middle<Vec>& across) {
   const auto [rho, sigma] = edgeBends(Vec(across.M - P), n, across.N, across.N.squaredNorm());
   return 5 * sigma * across.N - 4 * rho * n;
 }
 
-// So that the patch's middle is the medians' mean: on spheres no further off than its edges; with Vlachos' centre it is the worst place.
-// Returns whether there is one: not where a side's normals are opposite.
+// So that the patch's middle is the medians' mean: on spheres no further off than its edges; with Vlachos' centre it is
+// the worst place. Returns whether there is one: not where a side's normals are opposite.
 bool setCentreByMedians(Patch& p, const Middles& middles) {
   const VecPair bends = bendOfMedian(VecPair(p.b300, p.b030), VecPair(p.n200, p.n020), middles.others);
   const Vec3 bend = bends.first() + bends.second() + bendOfMedian(p.b003, p.n002, middles.first);
@@ -275,7 +277,8 @@ bool SurfaceNet::haveOtherNormals(std::int32_t triangle, int edge) const {
   const Neighbour other = neighbour(triangle, edge);
   const int next = (edge + 1) % 3, other_next = (other.edge + 1) % 3;
   if (is_flat_)
-    return normal(triangle, edge) != normal(other.triangle, other_next) || normal(triangle, next) != normal(other.triangle, other.edge);
+    return normal(triangle, edge) != normal(other.triangle, other_next) ||
+           normal(triangle, next) != normal(other.triangle, other.edge);
   const auto &numbers = links_[at(triangle)].normals,
              &others = links_[at(other.triangle)].normals;  // equal normals of a vertex share theirs
   return numbers[at(edge)] != others[at(other_next)] || numbers[at(next)] != others[at(other.edge)];
@@ -311,8 +314,8 @@ inline void SurfaceNet::fetchAround(std::int32_t triangle) const {
   }
 }
 
-// Who comes here goes on to a neighbour, or over it: what those are built from is fetched from memory meanwhile, their numbers first, then
-// what the neighbours' lead to, and the numbers of those beyond.
+// Who comes here goes on to a neighbour, or over it: what those are built from is fetched from memory meanwhile, their
+// numbers first, then what the neighbours' lead to, and the numbers of those beyond.
 void SurfaceNet::fill(std::int32_t triangle, PatchCache::Place& place) const {
   constexpr std::array<std::size_t, 3> kOpposite = {2, 0, 1};  // the corner across an edge
   fetchAround(triangle);

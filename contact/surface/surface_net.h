@@ -1,12 +1,16 @@
 // surface_net: the patches of a mesh and how they hang together.
 //
-// Kept are the mesh, its neighbours and its corner normals, about 60 bytes per triangle; a patch is built from them when it is
-// first touched. Of the shading variants
-//   smooth            has cubic edges that both sides share (edge_cubic.h), and a centre by its medians, of the same cubics:
-//                       b_111 = (27 m - sum of corners - 3 sum of handles) / 6,   m  mean of the medians' places after 2/3 of their way [m],
-//   smooth_published  each side's own, V = P + (d - (d.N) N) / 3, d to the other end, b_111 = E + (E - V) / 2 of the handles' mean E and the
+// Kept are the mesh, its neighbours and its corner normals, about 60 bytes per triangle; a patch is built from them
+// when it is first touched. Of the shading variants
+//   smooth            has cubic edges that both sides share (edge_cubic.h), and a
+//                     centre by its medians, of the same cubics:
+//                       b_111 = (27 m - sum of corners - 3 sum of handles) / 6,   m  mean of the
+//                       medians' places after 2/3 of their way [m],
+//   smooth_published  each side's own, V = P + (d - (d.N) N) / 3, d to the other end, b_111 = E +
+//                     (E - V) / 2 of the handles' mean E and the
 //                       corners' V (Vlachos et al., eq. 3),
-//   facet and force   have flat triangles with their own normals, which aren't kept; `force` keeps the corner normals beside.
+//   facet and force   have flat triangles with their own normals, which aren't kept;
+//                     `force` keeps the corner normals beside.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -30,11 +34,13 @@ struct CellCorner {
 class SurfaceNet {
  public:
   // Requires a manifold mesh. The file's normals are dropped from it once the corner normals are known.
-  SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals, SurfaceVariant variant = SurfaceVariant::smooth);
+  SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_normals,
+             SurfaceVariant variant = SurfaceVariant::smooth);
 
   int size() const { return static_cast<int>(mesh_.triangles.size()); }  // triangles
   const TriangleMesh& mesh() const { return mesh_; }
-  double length() const { return length_; }  // half the diagonal of the box around the vertices [m]: what small and large are measured by
+  // half the diagonal of the box around the vertices [m]: what small and large are measured by
+  double length() const { return length_; }
   std::size_t memoryBytes() const;
   std::uint64_t fingerprint() const { return fingerprint_; }
 
@@ -50,9 +56,13 @@ class SurfaceNet {
     return cell;
   }
 
-  const Vec3& vertex(std::int32_t triangle, int corner) const { return mesh_.vertices[at(mesh_.triangles[at(triangle)][at(corner)])]; }
+  const Vec3& vertex(std::int32_t triangle, int corner) const {
+    return mesh_.vertices[at(mesh_.triangles[at(triangle)][at(corner)])];
+  }
   // The patch's.
-  Vec3 normal(std::int32_t triangle, int corner) const { return is_flat_ ? facetNormal(triangle) : shadingNormal(triangle, corner); }
+  Vec3 normal(std::int32_t triangle, int corner) const {
+    return is_flat_ ? facetNormal(triangle) : shadingNormal(triangle, corner);
+  }
   Vec3 facetNormal(std::int32_t triangle) const;  // unit; zero for a triangle without area
   // Not of a `facet`.
   const Vec3& shadingNormal(std::int32_t triangle, int corner) const {
@@ -69,8 +79,9 @@ class SurfaceNet {
     return code < 0 || (code & 4) != 0;
   }
 
-  // Calls visit(CellCorner) on all triangles around the vertex at `start`, once each, from `start` on clockwise (at a border then on its
-  // other side), until visit returns false if it returns bool. Returns whether the vertex is on a border (as far as it came).
+  // Calls visit(CellCorner) on all triangles around the vertex at `start`, once each, from `start` on clockwise
+  // (at a border then on its other side), until visit returns false if it returns bool. Returns whether the
+  // vertex is on a border (as far as it came).
   template <class Visit>
   bool visitCorners(const CellCorner& start, Visit&& visit) const;
 
@@ -80,10 +91,12 @@ class SurfaceNet {
   SurfaceVariant variant_;
   bool is_flat_;  // facet or force
   TriangleMesh mesh_;
-  [[gnu::noinline]] void fill(std::int32_t triangle, PatchCache::Place& place) const;  // kept out of what finds a patch in its place
+  // kept out of what finds a patch in its place
+  [[gnu::noinline]] void fill(std::int32_t triangle, PatchCache::Place& place) const;
   void build(std::int32_t triangle, SurfaceCell& cell) const;
   bool haveOtherNormals(std::int32_t triangle, int edge) const;
-  // Asks memory for the numbers of the triangles around one. Always inlined: to the compiler it is without effect, and it drops calls of such.
+  // Asks memory for the numbers of the triangles around one. Always inlined: to the compiler it is
+  // without effect, and it drops calls of such.
   [[gnu::always_inline]] void fetchAround(std::int32_t triangle) const;
 
   // Neighbours across a triangle's edges and corners, side by side in memory, for they are asked for together.
@@ -127,7 +140,8 @@ double concaveCurvature(const Patch& patch, int edge);
 struct NetFindings {
   std::vector<std::int32_t>
       folded;  // triangles with (Su x Sv) . N <= 0 somewhere on a grid of 28 points: contact there may be held or jump
-  // Smallest radius of concave curvature along an edge [m], infinity for a convex surface: a finger of a larger radius doesn't fit there.
+  // Smallest radius of concave curvature along an edge [m], infinity for a convex surface: a
+  // finger of a larger radius doesn't fit there.
   double concave_radius;
   double bounding_radius;  // of a sphere about B's origin that holds the surface [m]
 };

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kMaxVisits = 2000;
 
-// Where the segment from `a` to `b` meets the triangle, if it does. Source: T. Moeller, B. Trumbore, J. Graphics Tools 2(1), 1997.
+// Where the segment from `a` to `b` meets the triangle, if it does. Source: T. Moeller,
+// B. Trumbore, J. Graphics Tools 2(1), 1997.
 bool meets(const Vec3& a, const Vec3& b, const Vec3& p0, const Vec3& p1, const Vec3& p2) {
   const Vec3 e1 = p1 - p0, e2 = p2 - p0, d = b - a, x = d.cross(e2), from = a - p0;
   const double det = e1.dot(x);
@@ -44,7 +45,8 @@ class ConeFinder {
         has_border_ = true;
         return {};
       }
-      if (kindAt(t, i) == kSharp) net_.visitCorners({t, i}, [&](const CellCorner& c) { addNormal(net_.normal(c.triangle, c.corner)); });
+      if (kindAt(t, i) == kSharp)
+        net_.visitCorners({t, i}, [&](const CellCorner& c) { addNormal(net_.normal(c.triangle, c.corner)); });
       if (cell.sharp[static_cast<std::size_t>(i)]) addOtherSide(t, i);
     }
     return coneOf(normals_);
@@ -55,13 +57,15 @@ class ConeFinder {
   static constexpr char kSmooth = 0, kSharp = 1, kBorder = 2;
 
   char& kindAt(std::int32_t t, int corner) {
-    return kind_[static_cast<std::size_t>(net_.mesh().triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(corner)])];
+    return kind_[static_cast<std::size_t>(
+        net_.mesh().triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(corner)])];
   }
   void addNormal(const Vec3& n) { normals_.push_back(n); }
   void addOtherSide(std::int32_t t, int edge) {
     const Neighbour other = net_.neighbour(t, edge);
     const Vec3 n0 = net_.normal(other.triangle, other.edge), n1 = net_.normal(other.triangle, (other.edge + 1) % 3);
-    addNormal(middleNormal(net_.vertex(other.triangle, other.edge), net_.vertex(other.triangle, (other.edge + 1) % 3), n0, n1));
+    addNormal(middleNormal(net_.vertex(other.triangle, other.edge), net_.vertex(other.triangle, (other.edge + 1) % 3),
+                           n0, n1));
   }
 
   const SurfaceNet& net_;
@@ -76,7 +80,8 @@ FacingBox boxAround(const Patch& patch, const NormalCone& cone, float hollow) {
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  return {{below(low[0]), below(low[1]), below(low[2])}, {above(high[0]), above(high[1]), above(high[2])}, cone, hollow};
+  return {
+      {below(low[0]), below(low[1]), below(low[2])}, {above(high[0]), above(high[1]), above(high[2])}, cone, hollow};
 }
 
 double hollowOf(const SurfaceNet& net, std::int32_t t, const SurfaceCell& cell) {
@@ -85,7 +90,8 @@ double hollowOf(const SurfaceNet& net, std::int32_t t, const SurfaceCell& cell) 
   for (int i = 0; i < 3; ++i) {
     const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
     const bool is_crease = cell.sharp[static_cast<std::size_t>(i)] && other.triangle >= 0;
-    if (is_crease && facet.dot(net.vertex(other.triangle, (other.edge + 2) % 3) - net.vertex(t, i)) > 0) return kInfinity;
+    if (is_crease && facet.dot(net.vertex(other.triangle, (other.edge + 2) % 3) - net.vertex(t, i)) > 0)
+      return kInfinity;
     hollow = std::max(hollow, concaveCurvature(cell.patch, i));
   }
   return hollow;
@@ -102,7 +108,8 @@ double bulgeOf(const Patch& patch) {
 
 }  // namespace
 
-SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, const std::function<void(double)>& progress) {
+SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector,
+                             const std::function<void(double)>& progress) {
   constexpr double kPatches = 0.6;  // of the time
   constexpr std::int32_t kReported = 1 << 14;
   ConeFinder cones(net);
@@ -115,8 +122,11 @@ SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, con
     inspector.see(t, cell.patch);
     const NormalCone cone = cones.find(t, cell);
     const Vec3 centre = (cell.patch.b300 + cell.patch.b030 + cell.patch.b003) / 3;
-    PatchBounds part{
-        {static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])}, 0, 0, 0, FacingTest(cone)};
+    PatchBounds part{{static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])},
+                     0,
+                     0,
+                     0,
+                     FacingTest(cone)};
     double radius2 = 0;
     for (const Vec3& p : controlPoints(cell.patch)) radius2 = std::max(radius2, (p - part.middle()).squaredNorm());
     part.radius = above(std::sqrt(radius2));
@@ -137,7 +147,8 @@ SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, con
   const auto& order = tree_.order();
   groups_.resize((order.size() + kLanes - 1) / kLanes);
   for (std::size_t i = 0; i < kLanes * groups_.size(); ++i) {
-    groups_[i / kLanes].set(static_cast<int>(i % kLanes), i < order.size() ? unordered[static_cast<std::size_t>(order[i])] : none);
+    groups_[i / kLanes].set(static_cast<int>(i % kLanes),
+                            i < order.size() ? unordered[static_cast<std::size_t>(order[i])] : none);
   }
 }
 
@@ -149,7 +160,8 @@ void SurfaceSearch::PatchGroup::set(int lane, const PatchBounds& part) {
   cones.set(lane, part.cone);
 }
 
-SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const {
+SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound,
+                                   Facing facing) const {
   SurfaceSeed seed{{}, bound, false};
   double bound2 = bound * bound;
   int visits = 0;
@@ -179,19 +191,21 @@ SurfaceSeed SurfaceSearch::nearest(const SurfaceNet& net, PatchCache& cache, con
 double SurfaceSearch::wayAlone(const Vec3& p, const Vec3& n, double h, double reach, double least, double most) const {
   if (!is_closed_ || !(h > most)) return 0;
   LoneContact lone(p, n, h, reach, most, tree_.rounding(p));
-  tree_.visitWhere([&](const FacingTree::Children& c) { return lone.mayMatter(c.centre(), c.radius, c.hollow, c.cones); },
-                   [&](std::int32_t leaf) {
-                     const PatchGroup& patches = group(leaf);
-                     const LaneMask may_matter = lone.mayMatter(patches.centre, patches.radius, patches.hollow, patches.cones);
-                     for (int lane = 0; lane < kLanes; ++lane) {
-                       if (may_matter[lane]) lone.show(patches.at(lane));
-                     }
-                     return lone.way() >= least;
-                   });
+  tree_.visitWhere(
+      [&](const FacingTree::Children& c) { return lone.mayMatter(c.centre(), c.radius, c.hollow, c.cones); },
+      [&](std::int32_t leaf) {
+        const PatchGroup& patches = group(leaf);
+        const LaneMask may_matter = lone.mayMatter(patches.centre, patches.radius, patches.hollow, patches.cones);
+        for (int lane = 0; lane < kLanes; ++lane) {
+          if (may_matter[lane]) lone.show(patches.at(lane));
+        }
+        return lone.way() >= least;
+      });
   return lone.way() >= least ? lone.way() : 0;
 }
 
-std::optional<Foot> SurfaceSearch::minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const {
+std::optional<Foot> SurfaceSearch::minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p,
+                                             double reach) const {
   PINCER_ASSERT(isIndex(place, tree_.order().size()));
   const std::int32_t triangle = triangleAt(place);
   const FlatPoint flat = closestOnFacet(net, triangle, p);

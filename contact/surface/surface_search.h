@@ -1,12 +1,14 @@
-// surface_search: places of a whole surface that a point may be in contact with, for starting (and guarding) the shell solver.
+// surface_search: places of a whole surface that a point may be in contact with, for
+// starting (and guarding) the shell solver.
 //
-// The tree's boxes hold the patches' control nets, so a patch that bulges out of its triangle isn't missed, and each has a normal cone
-// (normal_cone.h), so that only parts that may face the point are looked at: few, wherever a surface isn't a bowl about that point, and
-// no more of a fine mesh than of a coarse one. A cone holds the patch's shading normals and its facet's; along sharp edges and at their
-// ends also the other sides', for there the contact's normal may be any between them; at borders it may be any at all.
-// Within a leaf a patch is skipped by its own ball and cone, then by its flat triangle less the patch's bulge (C. Ericson, "Real-Time
-// Collision Detection", 2005, section 5.1.5); what is left is evaluated over the triangle's closest point. Where all local minima of the
-// distance are wanted, a triangle counts only if its closest point is one of the flat mesh: no neighbour leads nearer.
+// The tree's boxes hold the patches' control nets, so a patch that bulges out of its triangle isn't missed, and each
+// has a normal cone (normal_cone.h), so that only parts that may face the point are looked at: few, wherever a surface
+// isn't a bowl about that point, and no more of a fine mesh than of a coarse one. A cone holds the patch's shading
+// normals and its facet's; along sharp edges and at their ends also the other sides', for there the contact's normal
+// may be any between them; at borders it may be any at all. Within a leaf a patch is skipped by its own ball and cone,
+// then by its flat triangle less the patch's bulge (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5);
+// what is left is evaluated over the triangle's closest point. Where all local minima of the distance are wanted, a
+// triangle counts only if its closest point is one of the flat mesh: no neighbour leads nearer.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -22,7 +24,8 @@ namespace pincer::contact {
 
 struct SurfaceSeed {
   Foot foot;
-  double distance;     // from the point searched for to the patch at `foot` [m]: an upper bound of the distance to the surface
+  // from the point searched for to the patch at `foot` [m]: an upper bound of the distance to the surface
+  double distance;
   bool found = false;  // false: nothing within the bound
 };
 
@@ -46,13 +49,13 @@ class SurfaceSearch {
   // Looks at every patch once, and shows it to `inspector`. `progress` is told the share of the work done.
   SurfaceSearch(const SurfaceNet& net, NetInspector& inspector, const std::function<void(double)>& progress);
 
-  // The best place nearer than `bound` [m]. Looks at 2000 patches at most, which a finger can only exceed near the centre of a spherical
-  // bowl, where all places are equally near. Allocates nothing.
+  // The best place nearer than `bound` [m]. Looks at 2000 patches at most, which a finger can only exceed near the
+  // centre of a spherical bowl, where all places are equally near. Allocates nothing.
   SurfaceSeed nearest(const SurfaceNet& net, PatchCache& cache, const Vec3& p, double bound, Facing facing) const;
 
-  // Calls visit(place, approach) on the patches that `p` may come to be nearer to than `reach` and to face before it has moved by `horizon` > 0
-  // [m], which may shrink meanwhile, each with how far it has to move for that at least. Branches of the tree and patches whose cones are
-  // `passed` are left out. Allocates nothing.
+  // Calls visit(place, approach) on the patches that `p` may come to be nearer to than `reach` and to face before it
+  // has moved by `horizon` > 0 [m], which may shrink meanwhile, each with how far it has to move for that at least.
+  // Branches of the tree and patches whose cones are `passed` are left out. Allocates nothing.
   template <class Visit>
   void visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const {
     TreeWalk walk;
@@ -64,19 +67,20 @@ class SurfaceSearch {
                  Visit&& visit) const;
   PatchBounds part(std::int32_t place) const { return group(place / kLanes).at(place % kLanes); }
   double bulge(std::int32_t place) const { return group(place / kLanes).bulge[place % kLanes]; }
-  double bulge() const { return bulge_; }  // the largest [m]; 0 where round-off is all that patches differ from their triangles by
+  // the largest [m]; 0 where round-off is all that patches differ from their triangles by
+  double bulge() const { return bulge_; }
   std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
 
-  // The place of that patch's flat triangle that is nearest to `p`, if it is nearer than `reach` (less what the patch bulges), `p` is in
-  // front, and no neighbour leads nearer.
+  // The place of that patch's flat triangle that is nearest to `p`, if it is nearer than `reach` (less what the patch
+  // bulges), `p` is in front, and no neighbour leads nearer.
   std::optional<Foot> minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const;
 
   // How far `p` has to move at least until there is one, rounded down [m].
   float wayToMinimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const;
 
-  // How far `p` may move before it can come to face anything nearer than `reach` but the contact with the unit normal `n` that it is at the
-  // height `h` over, at most `most`; 0 where that is less than `least` [m], or not known: near edges, in hollows, on open surfaces
-  // (lone_contact.h). Allocates nothing.
+  // How far `p` may move before it can come to face anything nearer than `reach` but the contact with the unit normal
+  // `n` that it is at the height `h` over, at most `most`; 0 where that is less than `least` [m], or not known: near
+  // edges, in hollows, on open surfaces (lone_contact.h). Allocates nothing.
   double wayAlone(const Vec3& p, const Vec3& n, double h, double reach, double least, double most) const;
 
   // True if the flat triangles hide `a` from `b`. Allocates nothing.
@@ -93,7 +97,8 @@ class SurfaceSearch {
 
     void set(int lane, const PatchBounds& part);
     PatchBounds at(int lane) const {
-      return {{centre[0][lane], centre[1][lane], centre[2][lane]}, radius[lane], bulge[lane], hollow[lane], cones.at(lane)};
+      return {
+          {centre[0][lane], centre[1][lane], centre[2][lane]}, radius[lane], bulge[lane], hollow[lane], cones.at(lane)};
     }
     // Which of them mayHold, after `p` has moved by less than `way` [m].
     LaneMask mayHold(const LanesPoint& p, Lanes bound, Lanes way, Facing facing) const;
@@ -142,14 +147,15 @@ inline LaneMask SurfaceSearch::PatchGroup::mayHold(const LanesPoint& p, Lanes bo
 }
 
 template <class Visit>
-void SurfaceSearch::walkParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk, int most,
-                              Visit&& visit) const {
+void SurfaceSearch::walkParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed,
+                              TreeWalk& walk, int most, Visit&& visit) const {
   const LanesPoint x(p);
   const double rounded = tree_.rounding(p);
   tree_.visitNear(p, reach, horizon, passed, walk, most, [&](std::int32_t leaf) {
     const PatchGroup& patches = group(leaf);
     const Lanes way = LanesPoint::toLanes(horizon + rounded);
-    const LaneMask is_near = patches.mayHold(x, LanesPoint::toLanes(reach), way, Facing::front) & ~passed.hold(patches.cones);
+    const LaneMask is_near =
+        patches.mayHold(x, LanesPoint::toLanes(reach), way, Facing::front) & ~passed.hold(patches.cones);
     for (int lane = 0; lane < kLanes; ++lane) {
       if (!is_near[lane]) continue;
       const double approach = patches.at(lane).approach(p, reach);

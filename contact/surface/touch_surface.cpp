@@ -43,18 +43,21 @@ void keepCentre(const TouchingBall& ball, const ShellContact& main, SurfaceTrack
 
 // The usual tick: the only contact that is followed has moved on within its patch, nothing else has come near, and
 // nothing is eased.
-[[gnu::flatten]] bool followAlone(const FeltSurface& surface, const TouchingBall& ball, const EasedContacts& contacts, Lookout& lookout,
-                                  SurfaceTracker& tracker, SurfaceContacts& found) {
+[[gnu::flatten]] bool followAlone(const FeltSurface& surface, const TouchingBall& ball, const EasedContacts& contacts,
+                                  Lookout& lookout, SurfaceTracker& tracker, SurfaceContacts& found) {
   const int slot = onlySlot(tracker);
   if (slot < 0 || surface.variant != SurfaceVariant::smooth) return false;
   SurfaceSlot& kept = tracker.slots[static_cast<std::size_t>(slot)];
-  if (!isOn(surface.net, kept) || kept.fades || kept.ease > 0 || !knowsMotion(kept) || !lookout.isNothingDue()) return false;
-  const ShellContact contact = solveShellBeside(surface.net, surface.cache, ball.C, footOf(kept), {kept.du, kept.dv}, ball.C - ball.C_last);
+  if (!isOn(surface.net, kept) || kept.fades || kept.ease > 0 || !knowsMotion(kept) || !lookout.isNothingDue())
+    return false;
+  const ShellContact contact =
+      solveShellBeside(surface.net, surface.cache, ball.C, footOf(kept), {kept.du, kept.dv}, ball.C - ball.C_last);
   if (!contact.converged || !(contact.h > 0 && contact.h < ball.reach) || !contacts.continues(kept, contact) ||
       !lookout.isQuietAround(slot, contact.n))
     return false;
   const Vec3 S = ball.placeOf(contact);
-  kept = {contact.foot.triangle, false, contact.foot.b[1], contact.foot.b[2], 0, S, contact.n, contact.motion.du, contact.motion.dv};
+  kept = {contact.foot.triangle, false, contact.foot.b[1], contact.foot.b[2], 0, S, contact.n, contact.motion.du,
+          contact.motion.dv};
   found.points[0] = {S, contact.n, contact.h - ball.r, static_cast<std::uint32_t>(slot)};
   found.count = 1;
   found.cost.iterations = found.cost.longest_walk = contact.cost.steps;
@@ -84,8 +87,8 @@ void followSlots(const FeltSurface& surface, const TouchingBall& ball, EasedCont
 
 }  // namespace
 
-SurfaceContacts touchSurface(const FeltSurface& surface, const SurfaceSearch& search, const Vec3& p_BC, double r, double margin,
-                             SurfaceTracker& tracker) {
+SurfaceContacts touchSurface(const FeltSurface& surface, const SurfaceSearch& search, const Vec3& p_BC, double r,
+                             double margin, SurfaceTracker& tracker) {
   const double turn = surface.variant == SurfaceVariant::smooth ? kTurn * r : 0;
   const TouchingBall ball = ballAt(p_BC, r, margin, turn, tracker);
   SurfaceContacts found;

@@ -8,7 +8,7 @@ namespace pincer::contact {
 
 // Contacts of a finger of radius `r` about `p_BC` that are nearer than `margin` [m]; the main one is told of wherever
 // it is. Allocates nothing, throws nothing.
-SurfaceContacts touchSurface(const FeltSurface& surface, const SurfaceSearch& search, const Vec3& p_BC, double r, double margin,
-                             SurfaceTracker& tracker);
+SurfaceContacts touchSurface(const FeltSurface& surface, const SurfaceSearch& search, const Vec3& p_BC, double r,
+                             double margin, SurfaceTracker& tracker);
 
 }  // namespace pincer::contact

@@ -8,8 +8,9 @@ namespace pincer::contact {
 namespace {
 
 constexpr double kBesideKnown = 0.966;  // cosine of 15 degrees: a normal that far from a patch's still belongs to it
-constexpr double kAround = 1.0 / 16;    // of r: the normals of what lies nearer to a contact differ by no more than kApart
-constexpr int kMostWalked = 32;         // steps and crossings of a query's tries; the last walk is always ended
+// of r: the normals of what lies nearer to a contact differ by no more than kApart
+constexpr double kAround = 1.0 / 16;
+constexpr int kMostWalked = 32;  // steps and crossings of a query's tries; the last walk is always ended
 
 // True if the place is on an edge or a vertex that this triangle has too.
 bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangle) {
@@ -18,7 +19,8 @@ bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangl
   bool shares_all = true;
   for (std::size_t i = 0; i < 3; ++i) {
     if (foot.b[i] == 0) continue;
-    shares_all = shares_all && std::find(v.begin(), v.end(), net.mesh().triangles[static_cast<std::size_t>(foot.triangle)][i]) != v.end();
+    shares_all = shares_all && std::find(v.begin(), v.end(),
+                                         net.mesh().triangles[static_cast<std::size_t>(foot.triangle)][i]) != v.end();
   }
   return shares_all;
 }
@@ -95,27 +97,32 @@ void Lookout::examine(const Turns& turns, NearPart& near) {
 double Lookout::wayTo(std::int32_t place, const PatchBounds& part) const {
   constexpr double kRounding = 1e-12;  // of the mesh's size
   const double approach = part.approach(ball_.C, ball_.reach) - kRounding * surface_.net.length();
-  return approach > 0 ? approach : std::max<double>(0, search_.wayToMinimumOn(surface_.net, place, ball_.C, ball_.reach));
+  return approach > 0 ? approach
+                      : std::max<double>(0, search_.wayToMinimumOn(surface_.net, place, ball_.C, ball_.reach));
 }
 
 // True if a followed contact stands for this patch, or a place that a try has led to.
 [[gnu::flatten]] bool Lookout::isKnown(std::int32_t triangle, const PatchBounds& part) const {
-  const bool is_followed = contacts_.isAny(
-      [&](const FollowedContact& f) { return stands(f.contact.foot, ball_.placeOf(f.contact), f.contact.n, triangle, part); });
-  return is_followed || std::any_of(seen_.begin(), seen_.end(),
-                                    [&](const TriedPlace& place) { return stands(place.foot, place.S, place.n, triangle, part); });
+  const bool is_followed = contacts_.isAny([&](const FollowedContact& f) {
+    return stands(f.contact.foot, ball_.placeOf(f.contact), f.contact.n, triangle, part);
+  });
+  return is_followed || std::any_of(seen_.begin(), seen_.end(), [&](const TriedPlace& place) {
+           return stands(place.foot, place.S, place.n, triangle, part);
+         });
 }
 
-// True if the place is beside the patch, with a normal that the patch's could be. (Not any of its cone's: along a groove
-// that holds the other wall's.)
-bool Lookout::stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const {
+// True if the place is beside the patch, with a normal that the patch's could be. (Not any of its cone's:
+// along a groove that holds the other wall's.)
+bool Lookout::stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle,
+                     const PatchBounds& part) const {
   if (foot.triangle == triangle || isOnFeatureOf(surface_.net, foot, triangle)) return true;
   const double beside = std::max<double>(part.radius, kAround * ball_.r) + part.radius;
   return (S - part.middle()).squaredNorm() < beside * beside && closestNormal(surface_.net, triangle, n) > kBesideKnown;
 }
 
 void Lookout::tryPlace(const Foot& foot) {
-  const ShellContact found = surface_.variant == SurfaceVariant::smooth ? followUntilKnown(foot) : follow(surface_, ball_.C, ball_.r, foot);
+  const ShellContact found =
+      surface_.variant == SurfaceVariant::smooth ? followUntilKnown(foot) : follow(surface_, ball_.C, ball_.r, foot);
   seen_.push_back({found.foot, ball_.placeOf(found), found.n});
   if (!found.converged || !(found.h > 0 && found.h < ball_.reach) || !isNew(found)) return;
   if (contacts_.list().isFull()) tracker_.full_at = gone_;
@@ -131,7 +138,9 @@ ShellContact Lookout::followUntilKnown(const Foot& foot) {
   const ShellContact found = solveShell(surface_.net, surface_.cache, ball_.C, foot, {known.begin(), known.end()});
   walked_ += found.cost.steps + found.cost.crossings;
   if (!found.has_met) return found;
-  const auto isThere = [&](const FollowedContact& f) { return !f.fades && f.contact.foot.triangle == found.foot.triangle; };
+  const auto isThere = [&](const FollowedContact& f) {
+    return !f.fades && f.contact.foot.triangle == found.foot.triangle;
+  };
   return std::find_if(contacts_.list().begin(), contacts_.list().end(), isThere)->contact;
 }
 
@@ -141,7 +150,9 @@ bool Lookout::isNew(const ShellContact& candidate) const {
   if (contacts_.isAny([&](const FollowedContact& f) { return f.contact.n.dot(candidate.n) > kApart; })) return false;
   const Foot& foot = candidate.foot;
   const Vec3& C = ball_.C;
-  if (foot.isOnFace() && !isStable(evaluate(surface_.net.cell(foot.triangle, surface_.cache).patch, foot.b[1], foot.b[2]), C)) return false;
+  if (foot.isOnFace() &&
+      !isStable(evaluate(surface_.net.cell(foot.triangle, surface_.cache).patch, foot.b[1], foot.b[2]), C))
+    return false;
   const Vec3 S = ball_.placeOf(candidate);
   if (tracker_.has_centre && (tracker_.p_BC - S).dot(candidate.n) <= 0) return false;
   return !search_.isHidden(surface_.net, C, C + kShort * (S - C));

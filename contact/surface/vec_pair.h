@@ -1,5 +1,5 @@
-// vec_pair: two vectors side by side, a component of both in one register. What is written once for Vec3 and this gives the same bits with
-// both: sums are taken in Eigen's order.
+// vec_pair: two vectors side by side, a component of both in one register. What is written once for Vec3 and this gives
+// the same bits with both: sums are taken in Eigen's order.
 #pragma once
 #include <array>
 #include <cmath>

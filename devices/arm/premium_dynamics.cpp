@@ -8,8 +8,8 @@
 namespace pincer::devices::premium {
 namespace {
 
-// Table 2 of the source. Segments: a fore link, c the parallelogram's push rod, be and df the two driven capstan sectors with motors and
-// counterweights. Principal moments at each segment's centre [kg m^2].
+// Table 2 of the source. Segments: a fore link, c the parallelogram's push rod, be and df the two driven capstan
+// sectors with motors and counterweights. Principal moments at each segment's centre [kg m^2].
 struct Segment {
   double mass, xx, yy, zz;
 };
@@ -49,7 +49,8 @@ MassMatrix massMatrix(const Inertia& i, const Vec3& q) {
   const auto upper = math::sinCos(q[1]), fore = math::sinCos(q[2]);
   m.s2 = upper.sin, m.c2 = upper.cos;
   m.s3 = fore.sin, m.c3 = fore.cos;
-  m.m11 = i.base + i.u_c * m.c2 * m.c2 + i.u_s * m.s2 * m.s2 + i.f_c * m.c3 * m.c3 + i.f_s * m.s3 * m.s3 + i.x * m.c2 * m.s3;
+  m.m11 = i.base + i.u_c * m.c2 * m.c2 + i.u_s * m.s2 * m.s2 + i.f_c * m.c3 * m.c3 + i.f_s * m.s3 * m.s3 +
+          i.x * m.c2 * m.s3;
   m.m22 = i.u;
   m.m33 = i.f;
   m.m23 = -0.5 * i.x * (m.s2 * m.c3 - m.c2 * m.s3);

@@ -24,7 +24,8 @@ std::optional<Vec3> inverse(const Vec3& p_DF) {
   const double D = math::hypot(R, h);  // from the shoulder to the fingertip
   const double at_shoulder = (l1 * l1 + D * D - l2 * l2) / (2 * l1 * D);
   const double at_elbow = (l1 * l1 + l2 * l2 - D * D) / (2 * l1 * l2);
-  if (!(std::abs(at_shoulder) <= 1 && std::abs(at_elbow) <= 1)) return std::nullopt;  // D = 0 makes at_shoulder infinite
+  // D = 0 makes at_shoulder infinite
+  if (!(std::abs(at_shoulder) <= 1 && std::abs(at_elbow) <= 1)) return std::nullopt;
   const double q2 = math::atan2(h, R) + math::acos(at_shoulder);
   return Vec3(math::atan2(p_DF.x(), p_DF.z() + l1), q2, q2 + math::acos(at_elbow) - std::numbers::pi / 2);
 }
@@ -44,7 +45,8 @@ Mat3 jacobian(const Vec3& q) {
 double dexterity(const Vec3& q) { return reach(q) / l1 * math::cos(q[1] - q[2]); }
 
 bool withinLimits(const JointLimits& limits, const Vec3& q) {
-  return (q.array() >= limits.min.array()).all() && (q.array() <= limits.max.array()).all() && std::abs(q[1] - q[2]) <= limits.elbow;
+  return (q.array() >= limits.min.array()).all() && (q.array() <= limits.max.array()).all() &&
+         std::abs(q[1] - q[2]) <= limits.elbow;
 }
 
 }  // namespace pincer::devices::premium

@@ -1,8 +1,10 @@
 // replay_arm: an arm whose fingertip goes where a recorded one went; forces reach nobody.
 //
-//   p_DF(t) between two recorded places on the straight line; before the first it waits there, after the last its samples are invalid
+//   p_DF(t) between two recorded places on the straight line; before the first it waits
+//   there, after the last its samples are invalid
 //
-// So a session, a scene or a tick can be run again on what a person did, as often as one likes; a finger that was recorded doesn't give way.
+// So a session, a scene or a tick can be run again on what a person did, as often as one likes; a
+// finger that was recorded doesn't give way.
 #pragma once
 #include <string>
 #include <vector>

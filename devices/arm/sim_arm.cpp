@@ -17,20 +17,24 @@ const Vec3 kLever(l1, l1, l2);           // of each joint on the tip at the rese
 
 void check(const SimArmSettings& s) {
   requireSetting("simulated arm", s.payload >= 0 && s.payload < 1, "payload", s.payload, "[0, 1) kg");
-  requireSetting("simulated arm", s.coulomb_friction >= 0 && s.coulomb_friction < 10, "coulomb_friction", s.coulomb_friction, "[0, 10) N");
-  requireSetting("simulated arm", s.viscous_friction >= 0 && s.viscous_friction < 100, "viscous_friction", s.viscous_friction,
-                 "[0, 100) N s/m");
-  requireSetting("simulated arm", s.encoder_step > 0 && s.encoder_step < 0.1, "encoder_step", s.encoder_step, "(0, 0.1) rad");
+  requireSetting("simulated arm", s.coulomb_friction >= 0 && s.coulomb_friction < 10, "coulomb_friction",
+                 s.coulomb_friction, "[0, 10) N");
+  requireSetting("simulated arm", s.viscous_friction >= 0 && s.viscous_friction < 100, "viscous_friction",
+                 s.viscous_friction, "[0, 100) N s/m");
+  requireSetting("simulated arm", s.encoder_step > 0 && s.encoder_step < 0.1, "encoder_step", s.encoder_step,
+                 "(0, 0.1) rad");
   requireSetting("simulated arm", s.peak_force > 0 && s.peak_force < 1000, "peak_force", s.peak_force, "(0, 1000) N");
-  requireSetting("simulated arm", s.force_slew > 0 && std::isfinite(s.force_slew), "force_slew", s.force_slew, "(0, inf) N/s");
+  requireSetting("simulated arm", s.force_slew > 0 && std::isfinite(s.force_slew), "force_slew", s.force_slew,
+                 "(0, inf) N/s");
   requireSetting("simulated arm", s.delay >= 0 && s.delay <= 4e-3, "delay", s.delay, "[0, 0.004] s");
 }
 
 Vec3 startAngles(const SimArmSettings& s) {
   const auto q = inverse(s.start_D);
   if (q && withinLimits(s.limits, *q)) return *q;
-  throw std::invalid_argument("simulated arm: start_D = (" + std::to_string(s.start_D.x()) + ", " + std::to_string(s.start_D.y()) + ", " +
-                              std::to_string(s.start_D.z()) + ") m is out of reach. (0, 0, 0) is the reset place.");
+  throw std::invalid_argument("simulated arm: start_D = (" + std::to_string(s.start_D.x()) + ", " +
+                              std::to_string(s.start_D.y()) + ", " + std::to_string(s.start_D.z()) +
+                              ") m is out of reach. (0, 0, 0) is the reset place.");
 }
 
 // A stop: n . q <= most.
@@ -39,7 +43,8 @@ struct Stop {
   double most;
 };
 
-// Brings the joint speeds `w` down to what reaches, but doesn't cross, the stops within `h`; an inelastic impulse of the stop each.
+// Brings the joint speeds `w` down to what reaches, but doesn't cross, the stops within
+// `h`; an inelastic impulse of the stop each.
 void meetStops(const JointLimits& limits, const MassMatrix& m, const Vec3& q, double h, Vec3& w) {
   if (withinLimits(limits, q + h * w)) return;
   const std::array<Stop, 8> stops{{{Vec3::UnitX(), limits.max[0]},
@@ -58,7 +63,8 @@ void meetStops(const JointLimits& limits, const MassMatrix& m, const Vec3& q, do
   }
 }
 
-// M + damping of `b_tip` [kg] against ground at the tip and `b_joints` [kg m^2] in the joints; J^T J has the same zeros as M.
+// M + damping of `b_tip` [kg] against ground at the tip and `b_joints` [kg m^2] in
+// the joints; J^T J has the same zeros as M.
 MassMatrix withDamping(MassMatrix m, const Mat3& J, double b_tip, const Vec3& b_joints) {
   m.m11 += b_tip * J.col(0).squaredNorm() + b_joints[0];
   m.m22 += b_tip * J.col(1).squaredNorm() + b_joints[1];
@@ -87,7 +93,9 @@ SimArm::SimArm(const SimArmSettings& settings) : settings_(settings) {
 
 std::string SimArm::identity() const { return "pincer simulated Premium 1.5 arm " + settings_.serial; }
 
-DeviceState SimArm::state() const { return fault_ == SimFault::kUnplugged ? DeviceState::kFaulted : DeviceState::kReady; }
+DeviceState SimArm::state() const {
+  return fault_ == SimFault::kUnplugged ? DeviceState::kFaulted : DeviceState::kReady;
+}
 
 ArmSample SimArm::sample() { return sample_; }
 
@@ -96,7 +104,8 @@ void SimArm::commandForce(const Vec3& f_D) {
   Vec3 tau = f_D.allFinite() ? Vec3(jacobian(measuredAngles()).transpose() * f_D) : Vec3::Zero();
   const double load = tau.cwiseQuotient(settings_.peak_force * kLever).cwiseAbs().maxCoeff();
   if (load > 1) tau /= load;
-  if (pending_count_ == static_cast<int>(pending_.size())) --pending_count_;  // the newest command replaces the last one
+  // the newest command replaces the last one
+  if (pending_count_ == static_cast<int>(pending_.size())) --pending_count_;
   pending_[pending_count_++] = {tau, settings_.delay};
 }
 
@@ -127,12 +136,15 @@ Vec3 SimArm::trueTip_D() const { return forward(q_); }
 
 Vec3 SimArm::trueVelocity_D() const { return jacobian(q_) * w_; }
 
-Vec3 SimArm::handForce_D() const { return hand_.stiffness * (hand_.p_D - trueTip_D()) - hand_.damping * trueVelocity_D(); }
+Vec3 SimArm::handForce_D() const {
+  return hand_.stiffness * (hand_.p_D - trueTip_D()) - hand_.damping * trueVelocity_D();
+}
 
 Vec3 SimArm::motorForce_D() const { return jacobian(q_).transpose().inverse() * tau_; }
 
 double SimArm::mechanicalEnergy() const {
-  return 0.5 * w_.dot(massMatrix(inertia_, q_).times(w_)) + 0.5 * hand_.stiffness * (hand_.p_D - trueTip_D()).squaredNorm();
+  return 0.5 * w_.dot(massMatrix(inertia_, q_).times(w_)) +
+         0.5 * hand_.stiffness * (hand_.p_D - trueTip_D()).squaredNorm();
 }
 
 // Damping enters by its mean over the step (trapezoidal rule), which never turns into drive.
@@ -171,8 +183,8 @@ void SimArm::takeSample() {
   if (!sample_.valid) return;
   sample_.q_DF = gimbal_;
   sample_.J = jacobian(measuredAngles());
-  sample_.p_DF =
-      fault_ == SimFault::kNotFinitePosition ? Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())) : forward(measuredAngles());
+  sample_.p_DF = fault_ == SimFault::kNotFinitePosition ? Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()))
+                                                        : forward(measuredAngles());
 }
 
 Vec3 SimArm::measuredAngles() const { return rounded(q_, settings_.encoder_step); }

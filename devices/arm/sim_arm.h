@@ -3,11 +3,12 @@
 //   M(q) qddot + c(q, qdot) = tau_motor + J^T f_hand - B qdot - tau_friction,    |tau_friction,i| <= f_c lever_i
 //   f_hand = k (p_hand - p_DF) - b v_DF
 //
-// M holds the arm, the display that it carries and the finger's mass at the tip; gravity is compensated. Dry friction is exact: a joint
-// sticks while friction can hold it. Motors: command -> torque by J^T at the measured angles, one common scale when a joint would
-// saturate, a pure delay, then a slew limit. The encoders quantise the joint angles; position is all that the arm measures (no velocity).
-// Motion: half a drift, a kick with the forces there, half a drift; sub-steps of at most 0.5 ms (stable to 10 N/mm at the tip).
-// Sources: constants and stops in premium_dynamics.h and premium_kinematics.h; friction, resolution, forces from the maker's data sheet.
+// M holds the arm, the display that it carries and the finger's mass at the tip; gravity is compensated. Dry
+// friction is exact: a joint sticks while friction can hold it. Motors: command -> torque by J^T at the measured
+// angles, one common scale when a joint would saturate, a pure delay, then a slew limit. The encoders quantise
+// the joint angles; position is all that the arm measures (no velocity). Motion: half a drift, a kick with the
+// forces there, half a drift; sub-steps of at most 0.5 ms (stable to 10 N/mm at the tip). Sources: constants and
+// stops in premium_dynamics.h and premium_kinematics.h; friction, resolution, forces from the maker's data sheet.
 // Where no source is given the value is ours.
 #pragma once
 #include <array>
@@ -31,11 +32,11 @@ struct HandPull {
 };
 
 struct SimArmSettings {
-  std::string serial = "sim";                // tells two arms apart
-  Vec3 start_D = Vec3::Zero();               // where the tip is at time 0 [m], within reach
-  double payload = 0.045;                    // carried at the tip [kg]: a 2-DOF contact location display (Doxon 2014, ch. 4)
-  double coulomb_friction = 0.04;            // at the reset place [N], per axis
-  double viscous_friction = 0.05;            // at the reset place [N s/m] (ours)
+  std::string serial = "sim";      // tells two arms apart
+  Vec3 start_D = Vec3::Zero();     // where the tip is at time 0 [m], within reach
+  double payload = 0.045;          // carried at the tip [kg]: a 2-DOF contact location display (Doxon 2014, ch. 4)
+  double coulomb_friction = 0.04;  // at the reset place [N], per axis
+  double viscous_friction = 0.05;  // at the reset place [N s/m] (ours)
   double encoder_step = 3e-5 / premium::l1;  // of a joint angle [rad]: 0.03 mm at the tip
   double peak_force = 8.5;                   // at the reset place [N]
   double force_slew = 20000;                 // at the reset place [N/s]: 8.5 N in 0.4 ms, the motors' inductance (ours)

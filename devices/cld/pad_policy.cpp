@@ -6,7 +6,9 @@
 namespace pincer::devices {
 namespace {
 
-bool counts(const PadContact& c) { return c.place_L.allFinite() && c.normal_force > 0 && std::isfinite(c.normal_force); }
+bool counts(const PadContact& c) {
+  return c.place_L.allFinite() && c.normal_force > 0 && std::isfinite(c.normal_force);
+}
 
 std::optional<Vec2> meanPlace(const PadInput& in) {
   double strongest = 0;

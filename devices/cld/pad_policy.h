@@ -1,10 +1,11 @@
 // pad_policy: where a contact location display's tactor should be.
 //
-// Parked: at the centre, still (the force-only condition). In contact: the mean of the contact places, weighted by their normal forces.
-// Near an object (within `preposition_distance`): at the place of the nearest point, so that the tactor is there when contact begins.
-// Otherwise at the centre. The place asked for moves no faster than `speed`, so a hand-over between these is a glide, never a jump.
-// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 4 and 5 (pre-positioning within 30 mm, else centred). The
-// weights and the glide are ours. Places in the fingerpad frame L (tactile_display.h).
+// Parked: at the centre, still (the force-only condition). In contact: the mean of the contact places, weighted by
+// their normal forces. Near an object (within `preposition_distance`): at the place of the nearest point, so that
+// the tactor is there when contact begins. Otherwise at the centre. The place asked for moves no faster than
+// `speed`, so a hand-over between these is a glide, never a jump. Source: A. J. Doxon, doctoral dissertation,
+// University of Utah (2014), ch. 4 and 5 (pre-positioning within 30 mm, else centred). The weights and the glide are
+// ours. Places in the fingerpad frame L (tactile_display.h).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -46,8 +47,8 @@ struct PadState {
   PadMode mode = PadMode::kCentre;
 };
 
-// The command for this tick; `dt` since the last one [s], > 0. Contacts whose place or force isn't finite, or whose force isn't positive,
-// don't count.
+// The command for this tick; `dt` since the last one [s], > 0. Contacts whose place or force isn't finite, or
+// whose force isn't positive, don't count.
 TactileCommand padCommand(const PadPolicy& policy, const PadInput& in, double dt, PadState& state);
 
 }  // namespace pincer::devices

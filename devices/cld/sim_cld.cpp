@@ -16,10 +16,12 @@ constexpr int kTicksPerFrame = 4;  // commands at 500 Hz
 
 void check(const SimCldSettings& s) {
   requireSetting("simulated CLD", s.speed > 0 && s.speed < 10, "speed", s.speed, "(0, 10) m/s");
-  requireSetting("simulated CLD", s.natural_frequency > 0 && s.natural_frequency < 500, "natural_frequency", s.natural_frequency,
-                 "(0, 500) Hz");
-  requireSetting("simulated CLD", s.damping_ratio > 0 && s.damping_ratio < 1, "damping_ratio", s.damping_ratio, "(0, 1)");
-  requireSetting("simulated CLD", s.play.minCoeff() >= 0 && s.play.maxCoeff() < 0.1, "play", s.play.minCoeff(), "[0, 0.1) m");
+  requireSetting("simulated CLD", s.natural_frequency > 0 && s.natural_frequency < 500, "natural_frequency",
+                 s.natural_frequency, "(0, 500) Hz");
+  requireSetting("simulated CLD", s.damping_ratio > 0 && s.damping_ratio < 1, "damping_ratio", s.damping_ratio,
+                 "(0, 1)");
+  requireSetting("simulated CLD", s.play.minCoeff() >= 0 && s.play.maxCoeff() < 0.1, "play", s.play.minCoeff(),
+                 "[0, 0.1) m");
   requireSetting("simulated CLD", s.resolution > 0 && s.resolution < 0.01, "resolution", s.resolution, "(0, 0.01) m");
   requireSetting("simulated CLD", s.delay >= 0 && s.delay <= kTick * kTicksPerFrame, "delay", s.delay, "[0, 0.002] s");
   requireSetting("simulated CLD", s.jitter >= 0 && s.delay + s.jitter <= kTick * kTicksPerFrame, "jitter", s.jitter,
@@ -51,7 +53,9 @@ SimCld::SimCld(const SimCldSettings& settings) : settings_(settings), kinematics
 
 std::string SimCld::identity() const { return "pincer simulated 2-DOF CLD " + settings_.serial; }
 
-DeviceState SimCld::state() const { return fault_ == SimFault::kUnplugged ? DeviceState::kFaulted : DeviceState::kReady; }
+DeviceState SimCld::state() const {
+  return fault_ == SimFault::kUnplugged ? DeviceState::kFaulted : DeviceState::kReady;
+}
 
 TactileSample SimCld::sample() { return sample_; }
 
@@ -123,7 +127,8 @@ void SimCld::takeSample() {
   if (fault_ == SimFault::kNotFinitePosition) {
     sample_.place_L = Vec2::Constant(std::numeric_limits<double>::quiet_NaN());
   } else {
-    sample_.place_L = placeOf(Vec2(rounded(actuator_.x(), settings_.resolution), rounded(actuator_.y(), settings_.resolution)));
+    sample_.place_L =
+        placeOf(Vec2(rounded(actuator_.x(), settings_.resolution), rounded(actuator_.y(), settings_.resolution)));
   }
 }
 

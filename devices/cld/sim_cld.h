@@ -1,14 +1,17 @@
-// sim_cld: a 2-DOF contact location display in virtual time (per axis: a driven, rate-limited second-order actuator, then play).
+// sim_cld: a 2-DOF contact location display in virtual time (per axis: a driven,
+// rate-limited second-order actuator, then play).
 //
 //   a'' = w^2 (u - a) - 2 zeta w a',    |a'| <= speed;        y = clamp(y, a - play/2, a + play/2)
 //
-// u way commanded (held between commands), a way of the actuators, which the potentiometers measure, y way of the tactor [m]: first along the
-// finger (plate, then ring: two_dof_kinematics.h), second round it (carriage, r b). Places in L come from ways and back by the kinematics; a
-// place that can't be reached is replaced by the nearest that can.
-// The firmware takes the latest command every 2 ms, the command then travels for `delay`, and now and then for `jitter` more (drawn, always
-// in the same way); the actuators run at 2 kHz.
-// Figures: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 4: resolution 53 um at the tactor, more than 5 Hz, backlash
-// 1.13 mm proximal-distal (0.51 mm of it the plate's) and 0.42 mm radial-ulnar, 500 Hz, <= 2 ms. Damping, reach and speed are ours (he asks for 20 mm/s, better 74).
+// u way commanded (held between commands), a way of the actuators, which the potentiometers measure, y way of the
+// tactor [m]: first along the finger (plate, then ring: two_dof_kinematics.h), second round it (carriage, r b). Places
+// in L come from ways and back by the kinematics; a place that can't be reached is replaced by the nearest that can.
+// The firmware takes the latest command every 2 ms, the command then travels for `delay`, and now and then for `jitter`
+// more (drawn, always in the same way); the actuators run at 2 kHz.
+// Figures: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 4: resolution 53
+// um at the tactor, more than 5 Hz, backlash
+// 1.13 mm proximal-distal (0.51 mm of it the plate's) and 0.42 mm radial-ulnar, 500 Hz, <= 2 ms. Damping, reach and
+// speed are ours (he asks for 20 mm/s, better 74).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -55,7 +58,9 @@ class SimCld final : public TactileDisplay {
   Vec2 trueTactor_L() const { return placeOf(tactor_); }      // [m]
   Vec2 trueActuator_L() const { return placeOf(actuator_); }  // [m]
   // Plate [m], ring [rad], carriage [rad].
-  Vec3 trueActuators() const { return kinematics_.actuatorsAt({actuator_.x(), actuator_.y() / settings_.profile.radius}); }
+  Vec3 trueActuators() const {
+    return kinematics_.actuatorsAt({actuator_.x(), actuator_.y() / settings_.profile.radius});
+  }
   const TwoDofKinematics& kinematics() const { return kinematics_; }
 
  private:

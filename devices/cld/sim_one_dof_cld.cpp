@@ -20,7 +20,8 @@ void checkRoller(const SimOneDofCldSettings& s) {
   };
   require(s.map.arc > 0 && s.map.arc < 0.1, "map.arc", s.map.arc, "(0, 0.1) m");
   require(s.map.travel > 0 && s.map.travel < 0.1, "map.travel", s.map.travel, "(0, 0.1) m");
-  require(s.map.finger_diameter > 0 && s.map.finger_diameter < 0.1, "map.finger_diameter", s.map.finger_diameter, "(0, 0.1) m");
+  require(s.map.finger_diameter > 0 && s.map.finger_diameter < 0.1, "map.finger_diameter", s.map.finger_diameter,
+          "(0, 0.1) m");
   require(s.loop_frequency > 0 && s.loop_frequency < 50, "loop_frequency", s.loop_frequency, "(0, 50) Hz");
   require(s.speed > 0 && s.speed < 10, "speed", s.speed, "(0, 10) m/s");
   require(s.acceleration > 0 && s.acceleration < 1000, "acceleration", s.acceleration, "(0, 1000) m/s^2");
@@ -42,7 +43,9 @@ SimOneDofCld::SimOneDofCld(const SimOneDofCldSettings& settings) : settings_(set
 
 std::string SimOneDofCld::identity() const { return "pincer simulated 1-DOF CLD " + settings_.serial; }
 
-DeviceState SimOneDofCld::state() const { return fault_ == SimFault::kUnplugged ? DeviceState::kFaulted : DeviceState::kReady; }
+DeviceState SimOneDofCld::state() const {
+  return fault_ == SimFault::kUnplugged ? DeviceState::kFaulted : DeviceState::kReady;
+}
 
 TactileSample SimOneDofCld::sample() { return sample_; }
 
@@ -55,7 +58,8 @@ bool SimOneDofCld::command(const TactileCommand& command) {
 }
 
 void SimOneDofCld::setTransmission(const VirtualTransmission& transmission) {
-  if (const auto problem = problemWith(transmission)) throw std::invalid_argument(std::string(kRollerName) + ": " + *problem);
+  if (const auto problem = problemWith(transmission))
+    throw std::invalid_argument(std::string(kRollerName) + ": " + *problem);
   transmission_ = transmission;
 }
 

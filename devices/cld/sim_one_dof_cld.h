@@ -1,15 +1,17 @@
-// sim_one_dof_cld: a 1-DOF contact location display in virtual time: a roller that moves along the finger, under PID, with play.
+// sim_one_dof_cld: a 1-DOF contact location display in virtual time: a roller that
+// moves along the finger, under PID, with play.
 //
 //   c = travel / arc * s,   |c| <= travel / 2                                                      kinematics
 //   u = Kp e + Ki sum(e) dt - Kd v,   e = c_wanted - c_measured;   c'' = u, |u| <= acceleration, |c'| <= speed
 //   y = clamp(y, c - play/2, c + play/2)
 //
-// s place on the pad along the finger [m of arc, distal positive], c place of the carriage [m], y of the roller [m]. The pole of the loop is
-// triple: Kd = 3 w, Kp = 3 w^2, Ki = w^3. The firmware runs at 1 kHz; a command travels for 1 or 2 ms (which of the two is drawn, always the
-// same way), and never overtakes another. Between the command and the carriage lies the experimenter's virtual transmission, if any.
-// Figures: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2 and 3: roller 1 cm, travel about 2 cm, resolution 0.8 um
-// (0.4 um in ch. 3), more than 5 Hz, backlash 0.23 mm, PID at 1 kHz, delay 1-2 ms, 16 mm of arc on a finger of 20 mm (or 13 mm) mapped to
-// 16 mm of travel. Loop frequency, speed and acceleration are ours.
+// s place on the pad along the finger [m of arc, distal positive], c place of the carriage [m], y of the roller [m].
+// The pole of the loop is triple: Kd = 3 w, Kp = 3 w^2, Ki = w^3. The firmware runs at 1 kHz; a command travels for 1
+// or 2 ms (which of the two is drawn, always the same way), and never overtakes another. Between the command and the
+// carriage lies the experimenter's virtual transmission, if any. Figures: A. J. Doxon, doctoral dissertation,
+// University of Utah (2014), ch. 2 and 3: roller 1 cm, travel about 2 cm, resolution 0.8 um (0.4 um in ch. 3), more
+// than 5 Hz, backlash 0.23 mm, PID at 1 kHz, delay 1-2 ms, 16 mm of arc on a finger of 20 mm (or 13 mm) mapped to 16 mm
+// of travel. Loop frequency, speed and acceleration are ours.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -30,7 +32,8 @@ struct OneDofMap {
 
   double carriageOf(double place) const { return place * travel / arc; }  // [m]
   double placeOf(double carriage) const { return carriage * arc / travel; }
-  double angleOf(double place) const { return 2 * place / finger_diameter; }  // on the finger, from the pad's centre [rad]
+  // on the finger, from the pad's centre [rad]
+  double angleOf(double place) const { return 2 * place / finger_diameter; }
 };
 
 struct SimOneDofCldSettings {

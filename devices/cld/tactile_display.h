@@ -1,7 +1,7 @@
 // tactile_display: a contact location display (CLD), a tactor that touches the fingerpad where the virtual contact is.
 //
-// A place on the pad is (proximal-distal, radial-ulnar) arc length [m] from the pad's centre, in the fingerpad frame L: first axis positive
-// towards the fingertip (distal), second positive towards the radial side.
+// A place on the pad is (proximal-distal, radial-ulnar) arc length [m] from the pad's centre, in the fingerpad frame L:
+// first axis positive towards the fingertip (distal), second positive towards the radial side.
 #pragma once
 #include <optional>
 #include <string>

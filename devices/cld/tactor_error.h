@@ -3,11 +3,12 @@
 //   w --delay--> d --second order, speed limit--> a --play--> y --potentiometer--> m
 //   error = w - y = (w - d) + (d - a) + (a - y);    quantisation = m - a rounded, on top of what the host believes
 //
-// All of it root mean square over the time watched [m], on the place (both axes together). The chain is that of the simulated display
-// (sim_cld.h) with the device's figures; the total is taken from the tactor itself where its place is known (`shown`), else from the chain.
-// Measured against people, who localise a contact to 1.3 mm (mean absolute), notice a delay of 61 ms, and
-// play of 0.69 mm (low curvature) or 1.16 mm (an edge): 0.46 and 0.93 mm were added to their display's own 0.23 mm, which is taken for unfelt (A. J.
-// Doxon, doctoral dissertation, University of Utah, 2014, ch. 2 to 4).
+// All of it root mean square over the time watched [m], on the place (both axes together). The chain is that of
+// the simulated display (sim_cld.h) with the device's figures; the total is taken from the tactor itself where
+// its place is known (`shown`), else from the chain. Measured against people, who localise a contact to 1.3 mm
+// (mean absolute), notice a delay of 61 ms, and play of 0.69 mm (low curvature) or 1.16 mm (an edge): 0.46 and
+// 0.93 mm were added to their display's own 0.23 mm, which is taken for unfelt (A. J. Doxon, doctoral
+// dissertation, University of Utah, 2014, ch. 2 to 4).
 #pragma once
 #include <array>
 #include <optional>
@@ -35,14 +36,15 @@ struct DisplayFigures {
 struct TactorErrors {
   double total = 0, delay = 0, bandwidth = 0, play = 0, quantisation = 0;  // rms [m]
   double worst = 0;                                                        // of the total [m]
-  double beyond_limit = 0;                                                 // share of the time with more than kLocalisationLimit
+  double beyond_limit = 0;  // share of the time with more than kLocalisationLimit
 };
 
 class TactorErrorMeter {
  public:
   explicit TactorErrorMeter(const DisplayFigures& figures) : figures_(figures) {}
 
-  // A tick of `dt` [s], 0 < dt <= 4 ms: where the tactor should be, and where it is if that is known. Allocates nothing.
+  // A tick of `dt` [s], 0 < dt <= 4 ms: where the tactor should be, and where
+  // it is if that is known. Allocates nothing.
   void add(const Vec2& wanted_L, const std::optional<Vec2>& shown_L, double dt);
   TactorErrors result() const;
 

@@ -15,14 +15,15 @@ std::string outOfRange(const char* field, double value, const char* range) {
 }
 
 ProfilePoint between(const ProfilePoint& a, const ProfilePoint& b, double share) {
-  return {a.place + share * (b.place - a.place), a.plate + share * (b.plate - a.plate), a.tilt + share * (b.tilt - a.tilt)};
+  return {a.place + share * (b.place - a.place), a.plate + share * (b.plate - a.plate),
+          a.tilt + share * (b.tilt - a.tilt)};
 }
 
 // Where the profile has `measure` = `value`; beyond its ends, on its last pieces prolonged.
 template <typename Measure>
 ProfilePoint pointWhere(const std::vector<ProfilePoint>& points, double value, Measure measure) {
-  const auto inner =
-      std::lower_bound(points.begin() + 1, points.end() - 1, value, [&](const ProfilePoint& p, double v) { return measure(p) < v; });
+  const auto inner = std::lower_bound(points.begin() + 1, points.end() - 1, value,
+                                      [&](const ProfilePoint& p, double v) { return measure(p) < v; });
   const ProfilePoint &a = *(inner - 1), &b = *inner;
   return between(a, b, (value - measure(a)) / (measure(b) - measure(a)));
 }
@@ -35,8 +36,11 @@ std::optional<std::string> problemWithPoints(const std::vector<ProfilePoint>& po
   if (points.size() < 2) return "the finger profile has fewer than two points.";
   for (std::size_t i = 1; i < points.size(); ++i) {
     const ProfilePoint &a = points[i - 1], &b = points[i];
-    const bool grows = b.place > a.place && b.plate >= a.plate && b.tilt >= a.tilt && b.plate + b.tilt > a.plate + a.tilt;
-    if (!grows) return "point " + std::to_string(i) + " of the finger profile doesn't go on: place must grow, plate and tilt never shrink.";
+    const bool grows =
+        b.place > a.place && b.plate >= a.plate && b.tilt >= a.tilt && b.plate + b.tilt > a.plate + a.tilt;
+    if (!grows)
+      return "point " + std::to_string(i) +
+             " of the finger profile doesn't go on: place must grow, plate and tilt never shrink.";
   }
   return std::nullopt;
 }
@@ -50,12 +54,14 @@ FingerProfile FingerProfile::capsule(double radius) {
 std::optional<std::string> problemWith(const TwoDofGeometry& g, const FingerProfile& profile) {
   const auto within = [](double value, double low, double high) { return value > low && value < high; };
   if (!within(g.ring_radius, 0, 0.1)) return outOfRange("ring_radius", g.ring_radius, "(0, 0.1) m");
-  if (!within(profile.radius, 0, g.ring_radius)) return outOfRange("radius of the finger", profile.radius, "(0, ring_radius) m");
+  if (!within(profile.radius, 0, g.ring_radius))
+    return outOfRange("radius of the finger", profile.radius, "(0, ring_radius) m");
   if (!within(g.place_min, -0.1, 0)) return outOfRange("place_min", g.place_min, "(-0.1, 0) m");
   if (!within(g.place_max, 0, profile.radius * std::numbers::pi / 2)) {
     return outOfRange("place_max", g.place_max, "(0, a quarter of the finger's circumference) m");
   }
-  if (!within(g.carriage_max, 0, std::numbers::pi / 2)) return outOfRange("carriage_max", g.carriage_max, "(0, pi/2) rad");
+  if (!within(g.carriage_max, 0, std::numbers::pi / 2))
+    return outOfRange("carriage_max", g.carriage_max, "(0, pi/2) rad");
   return problemWithPoints(profile.points);
 }
 
@@ -89,8 +95,8 @@ Vec3 TwoDofKinematics::actuatorsAt(const PadWay& way) const {
 
 PadWay TwoDofKinematics::wayOf(const Vec3& q) const {
   const double R = geometry_.ring_radius;
-  const ProfilePoint p =
-      pointWhere(profile_.points, q[0] + R * q[1], [&](const ProfilePoint& point) { return point.plate + R * point.tilt; });
+  const ProfilePoint p = pointWhere(profile_.points, q[0] + R * q[1],
+                                    [&](const ProfilePoint& point) { return point.plate + R * point.tilt; });
   return {p.place, q[2]};
 }
 
@@ -113,7 +119,8 @@ PadWay TwoDofKinematics::wayTo(const Vec2& place_L) const {
 }
 
 bool TwoDofKinematics::reaches(const PadWay& way) const {
-  return way.along >= geometry_.place_min && way.along <= geometry_.place_max && std::abs(way.round) <= geometry_.carriage_max;
+  return way.along >= geometry_.place_min && way.along <= geometry_.place_max &&
+         std::abs(way.round) <= geometry_.carriage_max;
 }
 
 // Sixteen places, then the golden section round the best of them.
@@ -151,11 +158,13 @@ PadWay TwoDofKinematics::nearestOnEdge(const Vec2& place_L, const PadWay& from, 
 Reach TwoDofKinematics::reach(const Vec2& place_L) const {
   const PadWay way = wayTo(place_L);
   // Beyond a quarter turn round the finger the chart would come back from behind.
-  if (reaches(way) && (place_L.x() <= 0 || place_L.norm() < profile_.radius * std::numbers::pi / 2)) return {way, place_L, false};
+  if (reaches(way) && (place_L.x() <= 0 || place_L.norm() < profile_.radius * std::numbers::pi / 2))
+    return {way, place_L, false};
   const TwoDofGeometry& g = geometry_;
   // Where cylinder and sphere meet the edges have a kink, so they end there.
   const double b = g.carriage_max;
-  const std::array<PadWay, 6> corners{{{g.place_min, -b}, {0, -b}, {g.place_max, -b}, {g.place_max, b}, {0, b}, {g.place_min, b}}};
+  const std::array<PadWay, 6> corners{
+      {{g.place_min, -b}, {0, -b}, {g.place_max, -b}, {g.place_max, b}, {0, b}, {g.place_min, b}}};
   PadWay nearest = corners[0];
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const PadWay candidate = nearestOnEdge(place_L, corners[i], corners[(i + 1) % corners.size()]);

@@ -1,17 +1,21 @@
-// two_dof_kinematics: how the three actuators of a 2-DOF contact location display put its tactor on the bottom half of a finger.
+// two_dof_kinematics: how the three actuators of a 2-DOF contact location display put
+// its tactor on the bottom half of a finger.
 //
 //   p(q) = (x + R cos b sin a,  R sin b,  -R cos b cos a)                         tactor's root, on the ring
-//   J = d p / d q,   det J = -R^2 cos^2 b sin a                                   singular: ring upright (a = 0), carriage at +-90 degrees
-//   s(x, a):  x_profile(s) + R a_profile(s) = x + R a                             place along the finger, by the finger's profile
+//   J = d p / d q,   det J = -R^2 cos^2 b sin a                                   singular: ring
+//                    upright (a = 0), carriage at +-90 degrees
+//   s(x, a):  x_profile(s) + R a_profile(s) = x + R a                             place
+//             along the finger, by the finger's profile
 //   place_L = (s, r b)                              where s <= 0: the finger is a cylinder there
 //   place_L = r t (u_x, u_y),  cos t = cos b cos(s/r),  u along (cos b sin(s/r), sin b)      where s > 0: a sphere
 //
-// q = (x, a, b): slide of the plate [m, distal positive], tilt of the ring about the radial-ulnar axis [rad], way of the carriage round the
-// ring [rad, radial positive]. p in the fingertip's frame: origin at the centre of the tip's sphere, x distal, y radial, pad towards -z [m].
-// R radius of the ring, r of the finger [m]. The profile leads plate and ring so that the tactor, which sticks out R - r inward, presses
-// evenly; place_L as in tactile_display.h (azimuthal about the pad's centre on the tip).
-// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 4: sliding plate, tilting ring of radius 19 mm (index finger) or
-// 21 mm (thumb), carriage on a capstan cable. The equations, the default profile and the limits are ours.
+// q = (x, a, b): slide of the plate [m, distal positive], tilt of the ring about the radial-ulnar axis [rad], way of
+// the carriage round the ring [rad, radial positive]. p in the fingertip's frame: origin at the centre of the tip's
+// sphere, x distal, y radial, pad towards -z [m]. R radius of the ring, r of the finger [m]. The profile leads plate
+// and ring so that the tactor, which sticks out R - r inward, presses evenly; place_L as in tactile_display.h
+// (azimuthal about the pad's centre on the tip). Source: A. J. Doxon, doctoral dissertation, University of Utah (2014),
+// ch. 4: sliding plate, tilting ring of radius 19 mm (index finger) or 21 mm (thumb), carriage on a capstan cable. The
+// equations, the default profile and the limits are ours.
 #pragma once
 #include <optional>
 #include <string>

@@ -10,7 +10,8 @@ std::optional<std::string> problemWith(const VirtualTransmission& t) {
     return "backlash = " + std::to_string(t.backlash) + " is out of range [0, 0.05] m. It is in metres; 0.002 is 2 mm.";
   }
   if (t.delay >= 0 && t.delay <= kMaxDelayCells) return std::nullopt;
-  return "delay = " + std::to_string(t.delay) + " is out of range [0, " + std::to_string(kMaxDelayCells) + "] cells of 1 ms.";
+  return "delay = " + std::to_string(t.delay) + " is out of range [0, " + std::to_string(kMaxDelayCells) +
+         "] cells of 1 ms.";
 }
 
 double transmitted(const VirtualTransmission& t, double wanted, TransmissionState& state) {

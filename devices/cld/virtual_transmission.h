@@ -1,13 +1,14 @@
-// virtual_transmission: backlash, delay and stillness that an experiment puts between the place wanted and the place commanded, to learn
-// how good a contact location display has to be.
+// virtual_transmission: backlash, delay and stillness that an experiment puts between the place wanted and the place
+// commanded, to learn how good a contact location display has to be.
 //
 //   play    y_k = clamp(y_(k-1), x_k - b/2, x_k + b/2)
 //   delay   z_k = y_(k-n)
 //   freeze  z_k = z_(k-1), while the two above go on unseen
 //
-// x place wanted, z place commanded [m, arc length on the pad]; b backlash from stop to stop [m]; n cells of a FIFO, one cell per call, so
-// the caller calls once per millisecond for cells of 1 ms. The first place passes unchanged: the FIFO starts full of it.
-// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2 and 3 (just noticeable backlash and delay on the 1-DOF CLD).
+// x place wanted, z place commanded [m, arc length on the pad]; b backlash from stop to stop [m]; n cells of a FIFO,
+// one cell per call, so the caller calls once per millisecond for cells of 1 ms. The first place passes unchanged: the
+// FIFO starts full of it. Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2 and 3 (just
+// noticeable backlash and delay on the 1-DOF CLD).
 #pragma once
 #include <array>
 #include <cstddef>
@@ -36,8 +37,8 @@ struct TransmissionState {
   std::size_t newest = 0;
 };
 
-// z_k for x_k = `wanted` [m]. `t` may change between calls: a shorter delay skips, a longer one repeats what was. A `wanted` that isn't
-// finite counts as the last one that was.
+// z_k for x_k = `wanted` [m]. `t` may change between calls: a shorter delay skips, a longer one repeats what was. A
+// `wanted` that isn't finite counts as the last one that was.
 double transmitted(const VirtualTransmission& t, double wanted, TransmissionState& state);
 
 }  // namespace pincer::devices

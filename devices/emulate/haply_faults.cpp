@@ -102,9 +102,11 @@ std::string spoilt(HaplyFault fault, std::string text) {
     case HaplyFault::kKeyTwice:
       return replaced(std::move(text), R"("cursor_position":{)", R"("cursor_position":{"x":0.0,)");
     case HaplyFault::kUnknownKey:
-      return replaced(std::move(text), R"("cursor_position":{)", R"("new":{"of":["3.6",{"x":null}]},"cursor_position":{)");
+      return replaced(std::move(text), R"("cursor_position":{)",
+                      R"("new":{"of":["3.6",{"x":null}]},"cursor_position":{)");
     case HaplyFault::kDeviceTwice:
-      return replaced(std::move(text), R"("inverse3":[)", R"("inverse3":[{"device_id":"049D","state":{},"status":{}},)");
+      return replaced(std::move(text), R"("inverse3":[)",
+                      R"("inverse3":[{"device_id":"049D","state":{},"status":{}},)");
     case HaplyFault::kOutOfRange:
       return withPlace(std::move(text), "2.5");
     case HaplyFault::kEmptyObject:

@@ -1,4 +1,5 @@
-// haply_faults: the ways in which Haply's service, its devices or the wire may go wrong; the emulator does each of them on demand.
+// haply_faults: the ways in which Haply's service, its devices or the wire may go wrong;
+// the emulator does each of them on demand.
 #pragma once
 #include <array>
 #include <cstdint>

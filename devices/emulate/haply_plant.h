@@ -1,10 +1,10 @@
-// haply_plant: an Inverse3 that isn't there: a simulated arm (devices/arm), seen through the place and the turn of its base in the frame H
-// of Haply's service, with what stands between the service and its motors.
+// haply_plant: an Inverse3 that isn't there: a simulated arm (devices/arm), seen through the place and the turn of its
+// base in the frame H of Haply's service, with what stands between the service and its motors.
 //
 //   p_H = c + Rz(-turn) (x, -z, y)_D         its own words for the mapping, so that the driver's can be wrong
 //
-// All numbers that the service tells are of single precision, as there. Dead man: the fate of the last force when commands end isn't
-// documented; so it is a setting.
+// All numbers that the service tells are of single precision, as there. Dead man: the fate of the last force when
+// commands end isn't documented; so it is a setting.
 #pragma once
 #include <string>
 

@@ -1,6 +1,8 @@
-// haply_service: Haply's service that isn't there (docs/devices/haply.md), without socket or thread: texts in, texts out, time from outside.
+// haply_service: Haply's service that isn't there (docs/devices/haply.md), without socket or
+// thread: texts in, texts out, time from outside.
 //
-// Any number of sessions at once; of two that command one device, the later counts. What its pages leave open is a setting.
+// Any number of sessions at once; of two that command one device, the later
+// counts. What its pages leave open is a setting.
 #pragma once
 #include <map>
 #include <memory>
@@ -15,7 +17,7 @@ namespace pincer::devices::emulate {
 
 struct HaplyServiceSettings {
   std::vector<HaplyPlantSettings> arms{{}, {.id = "04BA", .grip = "1606"}};
-  int minor = 5;                       // it is 3.minor: from 4 on it has events, from 5 on numbers of sessions and whole settings
+  int minor = 5;  // it is 3.minor: from 4 on it has events, from 5 on numbers of sessions and whole settings
   bool vector = true, values = false;  // spellings of a force that it takes
   bool one_message_old = true;         // its states
   double force_scale = 1;

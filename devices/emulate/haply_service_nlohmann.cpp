@@ -13,7 +13,9 @@ using nlohmann::json;
 
 namespace {
 
-void add(std::string& text, const Vec3& v) { fmt::format_to(std::back_inserter(text), R"({{"x":{},"y":{},"z":{}}})", v.x(), v.y(), v.z()); }
+void add(std::string& text, const Vec3& v) {
+  fmt::format_to(std::back_inserter(text), R"({{"x":{},"y":{},"z":{}}})", v.x(), v.y(), v.z());
+}
 
 void add(std::string& text, const Quat& q) {
   fmt::format_to(std::back_inserter(text), R"({{"w":{},"x":{},"y":{},"z":{}}})", q.w(), q.x(), q.y(), q.z());
@@ -54,19 +56,23 @@ struct HaplyService::Texts {
     add(text, fault == HaplyFault::kPlaceFrozen ? service.frozen_H_[i] : plant.place_H());
     text += R"(,"cursor_velocity":)";
     add(text, plant.velocity_H());
-    fmt::format_to(std::back_inserter(text), R"(,"angular_position":{0},"angular_velocity":{0},"body_orientation":{1})", kAngles, kUpright);
+    fmt::format_to(std::back_inserter(text), R"(,"angular_position":{0},"angular_velocity":{0},"body_orientation":{1})",
+                   kAngles, kUpright);
     if (service.settings_.tells_force) text += R"(,"current_cursor_force":)", add(text, echo);
-    fmt::format_to(std::back_inserter(text),
-                   R"(,"current_cursor_position":{{"x":0,"y":0,"z":0}},"current_angular_torques":{0},"current_angular_position":{0},)"
-                   R"("control_domain":"cartesian","control_mode":"{1}","transform":{2}}})",
-                   kAngles, idle ? "idle" : "force", fault == HaplyFault::kTransformed ? R"({"scale":{"x":2,"y":2,"z":2}})" : "{}");
+    fmt::format_to(
+        std::back_inserter(text),
+        R"(,"current_cursor_position":{{"x":0,"y":0,"z":0}},"current_angular_torques":{0},"current_angular_position":{0},)"
+        R"("control_domain":"cartesian","control_mode":"{1}","transform":{2}}})",
+        kAngles, idle ? "idle" : "force",
+        fault == HaplyFault::kTransformed ? R"({"scale":{"x":2,"y":2,"z":2}})" : "{}");
   }
   static bool isCommandedByOthers(const HaplyService& service, int session) {
     return std::any_of(service.sessions_.begin(), service.sessions_.end(),
                        [&](const auto& other) { return other.first != session && other.second.commanded; });
   }
   static void status(const HaplyService& service, int session, std::string& text) {
-    fmt::format_to(std::back_inserter(text), R"({{"calibrated":{},"in_use":{},"power_supply":{},"ready":{},"started":true}})",
+    fmt::format_to(std::back_inserter(text),
+                   R"({{"calibrated":{},"in_use":{},"power_supply":{},"ready":{},"started":true}})",
                    truth(service.fault_ != HaplyFault::kCalibrationLost), truth(isCommandedByOthers(service, session)),
                    truth(service.fault_ != HaplyFault::kPowerLost), truth(service.fault_ != HaplyFault::kNotReady));
   }
@@ -87,10 +93,13 @@ struct HaplyService::Texts {
       add(text, plant.grip_H());
     }
     const bool wired = service.settings_.wired_grips;
-    text += wired ? R"(,"button":false,"hall":0})" : R"(,"buttons":{"a":false,"b":false,"c":false},"battery_level":0.87})";
+    text +=
+        wired ? R"(,"button":false,"hall":0})" : R"(,"buttons":{"a":false,"b":false,"c":false},"battery_level":0.87})";
     fmt::format_to(std::back_inserter(text), R"(,"status":{{"connected":true,"awake":{},"ready":true}})",
                    truth(service.fault_ != HaplyFault::kGripAsleep));
-    if (full) fmt::format_to(std::back_inserter(text), R"(,"config":{{"type":"{}"}})", wired ? "verse_grip" : "wireless_verse_grip");
+    if (full)
+      fmt::format_to(std::back_inserter(text), R"(,"config":{{"type":"{}"}})",
+                     wired ? "verse_grip" : "wireless_verse_grip");
     text += '}';
   }
   static std::string all(HaplyService& service, int session, bool full, bool first) {
@@ -100,11 +109,13 @@ struct HaplyService::Texts {
     text += R"("inverse3":[)";
     const char* comma = "";
     const bool tells = service.settings_.tells_others || !isCommandedByOthers(service, session);
-    for (std::size_t i = service.fault_ == HaplyFault::kDeviceGone ? 1 : 0; tells && i < service.plants_.size(); ++i, comma = ",") {
+    for (std::size_t i = service.fault_ == HaplyFault::kDeviceGone ? 1 : 0; tells && i < service.plants_.size();
+         ++i, comma = ",") {
       text += comma;
       arm(service, i, session, full, text);
     }
-    text += service.settings_.wired_grips ? R"(],"wireless_verse_grip":[],"verse_grip":[)" : R"(],"verse_grip":[],"wireless_verse_grip":[)";
+    text += service.settings_.wired_grips ? R"(],"wireless_verse_grip":[],"verse_grip":[)"
+                                          : R"(],"verse_grip":[],"wireless_verse_grip":[)";
     for (std::size_t i = 0; i < service.plants_.size(); ++i) {
       if (i > 0) text += ',';
       grip(service, i, full, text);
@@ -127,7 +138,8 @@ struct HaplyService::Texts {
     const json& force = (*commands)["set_cursor_force"];
     Vec3 f_H = Vec3::Zero();
     const auto take = [&](const char* key) {
-      if (force.contains(key)) f_H += Vec3(force[key].value("x", 0.0), force[key].value("y", 0.0), force[key].value("z", 0.0));
+      if (force.contains(key))
+        f_H += Vec3(force[key].value("x", 0.0), force[key].value("y", 0.0), force[key].value("z", 0.0));
     };
     if (service.settings_.vector) take("vector");
     if (service.settings_.values) take("values");
@@ -140,7 +152,8 @@ struct HaplyService::Texts {
   }
 };
 
-HaplyService::HaplyService(const HaplyServiceSettings& settings) : settings_(settings), frozen_H_(settings.arms.size(), Vec3::Zero()) {
+HaplyService::HaplyService(const HaplyServiceSettings& settings)
+    : settings_(settings), frozen_H_(settings.arms.size(), Vec3::Zero()) {
   for (const HaplyPlantSettings& arm : settings.arms) plants_.push_back(std::make_unique<HaplyPlant>(arm));
 }
 
@@ -196,7 +209,8 @@ std::string HaplyService::get(std::string_view target) const {
   if (target == "/settings/devices/force_scale") return fmt::format("{}", settings_.force_scale);
   if (target != "/devices") return "";
   json devices = json::array();
-  for (const auto& plant : plants_) devices.push_back({{"device_id", plant->settings().id}, {"type", plant->settings().type}});
+  for (const auto& plant : plants_)
+    devices.push_back({{"device_id", plant->settings().id}, {"type", plant->settings().type}});
   return json{{"ok", true}, {"data", devices}}.dump();
 }
 

@@ -61,8 +61,8 @@ struct WeartMiddleware::Parts {
     socklen_t size = sizeof place;
     if (::bind(listener, reinterpret_cast<sockaddr*>(&place), size) != 0 || ::listen(listener, 1) != 0) {
       ::close(listener);
-      throw std::runtime_error(
-          fmt::format("The emulator can't listen at port {}. Does WEART's Middleware run here? Another port: --port.", wanted));
+      throw std::runtime_error(fmt::format(
+          "The emulator can't listen at port {}. Does WEART's Middleware run here? Another port: --port.", wanted));
     }
     ::getsockname(listener, reinterpret_cast<sockaddr*>(&place), &size);
     port = ntohs(place.sin_port);
@@ -133,7 +133,8 @@ struct WeartMiddleware::Parts {
     std::string text = fmt::format(
         R"({{"type":"MW_STATUS","ts":1,"data":{{"status":"{}","version":"2.0.0","statusCode":0,"errorDesc":"","actuationsEnabled":{},"connectedDevices":[{{"macAddress":"00:11","handSide":"RIGHT"}}]}}}}~)",
         runs ? "RUNNING" : "IDLE", fault != WeartFault::kPassesNothingOn);
-    if (fault == WeartFault::kGlued) text = "Tracking:TrackType1:0.1:0.2~{\"type\":\"NEW\",\"data\":[1,{}]}~~" + text + "Tracking:~";
+    if (fault == WeartFault::kGlued)
+      text = "Tracking:TrackType1:0.1:0.2~{\"type\":\"NEW\",\"data\":[1,{}]}~~" + text + "Tracking:~";
     if (fault == WeartFault::kOverlong) text = std::string(100'000, 'x') + "~" + text;
     const std::size_t piece = fault == WeartFault::kPieces ? 1 : text.size();
     for (std::size_t at = 0; at < text.size(); at += piece) {
@@ -165,7 +166,9 @@ double WeartMiddleware::level(const std::string& thimble) const {
   return parts_->presses[thimble].level;
 }
 
-double WeartMiddleware::levelOf(const std::string& thimble) const { return std::max(level("RIGHT:" + thimble), level("LEFT:" + thimble)); }
+double WeartMiddleware::levelOf(const std::string& thimble) const {
+  return std::max(level("RIGHT:" + thimble), level("LEFT:" + thimble));
+}
 
 std::int64_t WeartMiddleware::since(const std::string& thimble) const {
   const std::lock_guard lock(parts_->one);

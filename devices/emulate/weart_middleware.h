@@ -1,4 +1,5 @@
-// weart_middleware: WEART's Middleware that isn't there: a TCP server that takes forces for thimbles and tells its status, parsed by a grammar of its own.
+// weart_middleware: WEART's Middleware that isn't there: a TCP server that takes forces for thimbles and tells
+// its status, parsed by a grammar of its own.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -25,7 +26,8 @@ class WeartMiddleware {
 
   std::uint16_t port() const;
   void setFault(WeartFault fault);
-  // The level at which a thimble presses, by the names of the protocol ("RIGHT:INDEX"), and when it became that (monotonic clock) [ns].
+  // The level at which a thimble presses, by the names of the protocol ("RIGHT:INDEX"), and
+  // when it became that (monotonic clock) [ns].
   double level(const std::string& thimble) const;
   double levelOf(const std::string& thimble) const;  // likewise ("INDEX"), of whichever hand
   std::int64_t since(const std::string& thimble) const;

@@ -28,8 +28,8 @@ constexpr int kLostAnswers = 50;            // in a row: the Falcon is gone
 
 }  // namespace
 
-// A packet that says something, status bytes and all: the chip sends its status alone whenever its latency timer runs out. How long it is;
-// at most the status: it says nothing any more.
+// A packet that says something, status bytes and all: the chip sends its status alone whenever its latency timer runs
+// out. How long it is; at most the status: it says nothing any more.
 int FalconSession::hear(std::span<std::uint8_t> bytes) {
   int got = 0;
   for (int i = 0; i < kEmptyPackets && got >= 0 && got <= kStatus; ++i) got = port_.read(bytes, kTimeout);
@@ -63,22 +63,27 @@ std::string FalconSession::start(std::span<const std::uint8_t> firmware) {
     return "The Falcon has no firmware, and none was given. Take the image from the maker's driver: --firmware FILE "
            "(docs/devices/setup.md).";
   }
-  if (!enterLoader()) return "The Falcon doesn't answer its loader's greeting. Unplug its power for ten seconds and try again.";
+  if (!enterLoader())
+    return "The Falcon doesn't answer its loader's greeting. Unplug its power for ten seconds and try again.";
   if (!load(firmware))
-    return "The Falcon didn't take the firmware. Is the file the maker's image? Unplug its power for ten seconds and try again.";
-  if (!enterNormalMode() || !exchange({})) return "The Falcon's firmware doesn't answer. Unplug its power for ten seconds and try again.";
+    return "The Falcon didn't take the firmware. Is the file the maker's image? Unplug its power for ten seconds and "
+           "try again.";
+  if (!enterNormalMode() || !exchange({}))
+    return "The Falcon's firmware doesn't answer. Unplug its power for ten seconds and try again.";
   return "";
 }
 
 bool FalconSession::enterLoader() {
   const bool set = port_.control(kReset, kPurgeIn) && port_.control(kReset, kPurgeOut) && port_.control(kLatency, 16) &&
-                   port_.control(kBaud, kBaud9600) && port_.control(kData, kEightBits) && port_.control(kFlow, kNoFlow) &&
-                   port_.control(kModem, kRtsLow) && port_.control(kModem, kDtrLow) && port_.control(kModem, kDtrHigh);
+                   port_.control(kBaud, kBaud9600) && port_.control(kData, kEightBits) &&
+                   port_.control(kFlow, kNoFlow) && port_.control(kModem, kRtsLow) && port_.control(kModem, kDtrLow) &&
+                   port_.control(kModem, kDtrHigh);
   if (!set) return false;
   bool greeted = false;
   for (int i = 0; i < kGreetings && !greeted; ++i) greeted = port_.write(kHello) && hears(kHelloBack);
   constexpr std::array<std::uint8_t, 1> kLetter{0x41};
-  return greeted && port_.control(kModem, kDtrLow) && port_.control(kBaud, kBaud140000) && port_.write(kLetter) && hears(kLetter);
+  return greeted && port_.control(kModem, kDtrLow) && port_.control(kBaud, kBaud140000) && port_.write(kLetter) &&
+         hears(kLetter);
 }
 
 // The loader sends back every byte of the image.
@@ -90,7 +95,8 @@ bool FalconSession::load(std::span<const std::uint8_t> firmware) {
     for (std::size_t back = 0; back < chunk.size();) {
       const int got = hear(bytes);
       if (got <= kStatus || back + static_cast<std::size_t>(got - kStatus) > chunk.size()) return false;
-      if (!std::equal(bytes.begin() + kStatus, bytes.begin() + got, chunk.begin() + static_cast<std::ptrdiff_t>(back))) return false;
+      if (!std::equal(bytes.begin() + kStatus, bytes.begin() + got, chunk.begin() + static_cast<std::ptrdiff_t>(back)))
+        return false;
       back += static_cast<std::size_t>(got - kStatus);
     }
     at += chunk.size();
@@ -114,7 +120,8 @@ std::optional<Answer> FalconSession::exchange(const Orders& orders) {
   return std::nullopt;
 }
 
-FalconArm::FalconArm(std::unique_ptr<FalconPort> port, std::vector<std::uint8_t> firmware) : port_(std::move(port)), session_(*port_) {
+FalconArm::FalconArm(std::unique_ptr<FalconPort> port, std::vector<std::uint8_t> firmware)
+    : port_(std::move(port)), session_(*port_) {
   const std::string problem = session_.start(firmware);
   if (!problem.empty()) throw std::runtime_error("USB port " + port_->place() + ": " + problem);
   capabilities_.peak_force = 9;
@@ -173,7 +180,8 @@ Orders FalconArm::ordersNow(const Reading& last, bool homed) {
   orders.lamps = homed ? 4 : 2;
   wishes_.update();
   const Wish& wish = wishes_.current();
-  const bool may = homed && last.valid && !stopped_.load(std::memory_order_acquire) && usb::monotonicNs() - wish.ns < kForceLife;
+  const bool may =
+      homed && last.valid && !stopped_.load(std::memory_order_acquire) && usb::monotonicNs() - wish.ns < kForceLife;
   if (!may) return orders;
   const Vec3 torque = last.J.transpose() * wish.f_D;
   const double most = std::max(1.0, kCountsPerTorque / kMostCounts * torque.cwiseAbs().maxCoeff());  // one common scale

@@ -1,8 +1,9 @@
-// falcon_arm: a Novint Falcon as an arm. Its maker's firmware must be loaded into it after every power-up; the user supplies that image.
+// falcon_arm: a Novint Falcon as an arm. Its maker's firmware must be loaded into it after
+// every power-up; the user supplies that image.
 //
-// A thread of its own writes torques and reads encoders, over and over, about once a millisecond. A force that is older than `kForceLife`
-// becomes zero there: the Falcon itself has no deadline. So a program that is stopped as a whole leaves the last torque on: keep a hand at
-// the power switch (docs/devices/setup.md).
+// A thread of its own writes torques and reads encoders, over and over, about once a millisecond. A force that is older
+// than `kForceLife` becomes zero there: the Falcon itself has no deadline. So a program that is stopped as a whole
+// leaves the last torque on: keep a hand at the power switch (docs/devices/setup.md).
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -38,8 +39,8 @@ struct FalconPlace {
   std::string serial;  // of its FTDI chip; empty where there is none, or no right to read it
 };
 
-// Every Falcon on USB, in the order of the ports; and the one at a port. Both throw std::runtime_error with a sentence and the remedy.
-// Implemented by falcon_port_libusb.cpp.
+// Every Falcon on USB, in the order of the ports; and the one at a port. Both throw std::runtime_error with a sentence
+// and the remedy. Implemented by falcon_port_libusb.cpp.
 std::vector<FalconPlace> listFalcons();
 std::unique_ptr<FalconPort> openFalconPort(const std::string& port);
 

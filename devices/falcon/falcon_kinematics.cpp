@@ -18,7 +18,8 @@ Vec3 inLeg(const Vec3& p, int i, const Geometry& g) {
   return {cs * p.x() + sn * p.y() - g.r, -sn * p.x() + cs * p.y() - g.s, p.z()};
 }
 
-// The shin seen along v: its length in the leg's plane, absent where the parallelogram would have to be longer than it is.
+// The shin seen along v: its length in the leg's plane, absent where the
+// parallelogram would have to be longer than it is.
 std::optional<double> shin(const Vec3& P, const Geometry& g) {
   const double across = P.y() + g.f;
   const double rest = g.b * g.b - across * across;
@@ -78,7 +79,8 @@ std::optional<Vec3> forward(const Vec3& angles, const Vec3& guess, const Geometr
     }
     if (!(std::abs(slope.determinant()) > 1e-9)) return std::nullopt;
     const Vec3 change = slope.inverse() * F;
-    p -= change.norm() > 0.02 ? Vec3(change * (0.02 / change.norm())) : change;  // far from the root a whole step may leave the reach
+    // far from the root a whole step may leave the reach
+    p -= change.norm() > 0.02 ? Vec3(change * (0.02 / change.norm())) : change;
     if (change.norm() < 1e-9) return p;
   }
   return std::nullopt;

@@ -17,7 +17,8 @@ Packet packetOf(const Orders& orders) {
   packet.back() = '>';
   for (std::size_t i = 0; i < 3; ++i) {
     const auto bits = static_cast<std::uint16_t>(std::clamp(orders.torques[i], -kMostTorque, kMostTorque));
-    for (std::size_t k = 0; k < 4; ++k) packet[1 + 4 * i + k] = static_cast<std::uint8_t>('A' + ((bits >> (4 * k)) & 0xf));
+    for (std::size_t k = 0; k < 4; ++k)
+      packet[1 + 4 * i + k] = static_cast<std::uint8_t>('A' + ((bits >> (4 * k)) & 0xf));
   }
   packet[13] = static_cast<std::uint8_t>('A' + ((orders.lamps & 0xe) | (orders.homing ? 1 : 0)));
   return packet;

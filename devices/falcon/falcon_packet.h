@@ -1,9 +1,12 @@
 // falcon_packet: the 16 characters that go to a Falcon's firmware, and the 16 that come back.
 //
-//   '<' g0 g1 g2 g3 h0 h1 h2 h3 i0 i1 i2 i3 j k '>'    each but the ends is a nibble + 'A', least significant nibble first
+//   '<' g0 g1 g2 g3 h0 h1 h2 h3 i0 i1 i2 i3 j k '>'    each but the ends is a nibble +
+//                                                      'A', least significant nibble first
 //
-// To the Falcon: g, h, i motor torques (16 bits, two's complement), j lamps and homing. From it: g, h, i encoder counts, j buttons (bits 0 to
-// 3) and, while homing, which encoders are home (bits 4 to 6: the character then goes beyond 'P'). An FTDI chip puts two status bytes before
+// To the Falcon: g, h, i motor torques (16 bits, two's complement), j lamps and homing. From it: g,
+// h, i encoder counts, j buttons (bits 0 to
+// 3) and, while homing, which encoders are home (bits 4 to 6: the character then goes beyond 'P').
+//    An FTDI chip puts two status bytes before
 // each USB packet of up to 64 bytes. Source: libnifalcon (FalconFirmwareNovintSDK.h); the maker published nothing.
 #pragma once
 #include <array>

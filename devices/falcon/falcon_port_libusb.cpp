@@ -31,11 +31,13 @@ class LibusbContext {
     const auto count = libusb_get_device_list(context_, &list);
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       libusb_device_descriptor d;
-      const bool is_one = libusb_get_device_descriptor(list[i], &d) == 0 && d.idVendor == kFtdiVendor && d.idProduct == kFalconProduct;
+      const bool is_one =
+          libusb_get_device_descriptor(list[i], &d) == 0 && d.idVendor == kFtdiVendor && d.idProduct == kFalconProduct;
       is_one ? found.push_back(list[i]) : libusb_unref_device(list[i]);
     }
     if (count >= 0) libusb_free_device_list(list, 0);
-    std::sort(found.begin(), found.end(), [](libusb_device* a, libusb_device* b) { return usb::portName(a) < usb::portName(b); });
+    std::sort(found.begin(), found.end(),
+              [](libusb_device* a, libusb_device* b) { return usb::portName(a) < usb::portName(b); });
     return found;
   }
 
@@ -47,7 +49,8 @@ std::string serialOf(libusb_device_handle* handle) {
   libusb_device_descriptor d;
   std::array<unsigned char, 64> text{};
   if (libusb_get_device_descriptor(libusb_get_device(handle), &d) != 0 || d.iSerialNumber == 0) return "";
-  const int length = libusb_get_string_descriptor_ascii(handle, d.iSerialNumber, text.data(), static_cast<int>(text.size()));
+  const int length =
+      libusb_get_string_descriptor_ascii(handle, d.iSerialNumber, text.data(), static_cast<int>(text.size()));
   return length > 0 ? std::string(text.begin(), text.begin() + length) : "";
 }
 
@@ -64,8 +67,10 @@ std::string serialOf(libusb_device* device) {
     throw std::runtime_error("No permission to open the Falcon at USB port " + port +
                              ". Install the udev rule and join its group (docs/devices/setup.md), then replug it.");
   }
-  if (error == LIBUSB_ERROR_BUSY) throw std::runtime_error("Another program uses the Falcon at USB port " + port + ". Close that program.");
-  throw std::runtime_error("The Falcon at USB port " + port + " can't be opened (" + libusb_error_name(error) + "). Replug it.");
+  if (error == LIBUSB_ERROR_BUSY)
+    throw std::runtime_error("Another program uses the Falcon at USB port " + port + ". Close that program.");
+  throw std::runtime_error("The Falcon at USB port " + port + " can't be opened (" + libusb_error_name(error) +
+                           "). Replug it.");
 }
 
 class LibusbFalconPort final : public FalconPort {
@@ -92,7 +97,8 @@ class LibusbFalconPort final : public FalconPort {
 
   std::string place() const override { return port_; }
   bool control(std::uint8_t request, std::uint16_t value) override {
-    return libusb_control_transfer(handle_, LIBUSB_REQUEST_TYPE_VENDOR, request, value, 0, nullptr, 0, kPortTimeout) == 0;
+    return libusb_control_transfer(handle_, LIBUSB_REQUEST_TYPE_VENDOR, request, value, 0, nullptr, 0, kPortTimeout) ==
+           0;
   }
   bool write(std::span<const std::uint8_t> bytes) override {
     int sent = 0;
@@ -102,8 +108,8 @@ class LibusbFalconPort final : public FalconPort {
   }
   int read(std::span<std::uint8_t> bytes, int timeout_ms) override {
     int got = 0;
-    const int error =
-        libusb_bulk_transfer(handle_, kFalconIn, bytes.data(), static_cast<int>(bytes.size()), &got, static_cast<unsigned>(timeout_ms));
+    const int error = libusb_bulk_transfer(handle_, kFalconIn, bytes.data(), static_cast<int>(bytes.size()), &got,
+                                           static_cast<unsigned>(timeout_ms));
     return error == 0 || error == LIBUSB_ERROR_TIMEOUT ? got : -1;
   }
 

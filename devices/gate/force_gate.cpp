@@ -51,7 +51,9 @@ double measuredAt(Trip cause, const GateInput& in) {
   return cause == Trip::kStaleSample ? in.now - in.sample.time : 0;
 }
 
-double ramp(const GateLimits& limits, double armed_for) { return armed_for < limits.ramp_time ? armed_for / limits.ramp_time : 1.0; }
+double ramp(const GateLimits& limits, double armed_for) {
+  return armed_for < limits.ramp_time ? armed_for / limits.ramp_time : 1.0;
+}
 
 // The force that the motors can bear now [N].
 double thermalForce(const GateLimits& limits, double heat) {
@@ -86,7 +88,8 @@ struct TripWords {
 };
 
 constexpr const char* kBusyRemedy =
-    "close other programs, permit real-time priority (docs/devices/setup.md), or allow longer stalls with --watchdog; then arm again.";
+    "close other programs, permit real-time priority (docs/devices/setup.md), or allow longer stalls with --watchdog; "
+    "then arm again.";
 
 TripWords wordsOf(Trip trip) {
   switch (trip) {
@@ -98,7 +101,8 @@ TripWords wordsOf(Trip trip) {
       return {"The fingertip was too fast", "hold the arm, then arm again."};
     case Trip::kStaleSample:
       return {"The arm's last sample was too old, or its clock ran backward",
-              "check the arm's cable; if the computer is busy, close other programs, permit real-time priority (docs/devices/setup.md), or "
+              "check the arm's cable; if the computer is busy, close other programs, permit real-time priority "
+              "(docs/devices/setup.md), or "
               "allow "
               "older samples with --watchdog; then arm again."};
     case Trip::kInvalidSample:
@@ -117,7 +121,8 @@ TripWords wordsOf(Trip trip) {
 
 std::string sentence(Trip trip, const std::string& measured) {
   const TripWords words = wordsOf(trip);
-  return fmt::format("{}{}{}: {}", words.what, measured, trip == Trip::kNone ? "" : ". Forces are zero and stay so", words.remedy);
+  return fmt::format("{}{}{}: {}", words.what, measured, trip == Trip::kNone ? "" : ". Forces are zero and stay so",
+                     words.remedy);
 }
 
 }  // namespace
@@ -125,20 +130,23 @@ std::string sentence(Trip trip, const std::string& measured) {
 GateLimits within(GateLimits limits, const ArmCapabilities& arm) {
   if (arm.peak_force > 0) limits.peak_force = std::min(limits.peak_force, arm.peak_force);
   if (arm.continuous_force > 0) limits.continuous_force = std::min(limits.continuous_force, arm.continuous_force);
-  if (arm.peak_torque) limits.peak_torque = limits.peak_torque ? limits.peak_torque->cwiseMin(*arm.peak_torque) : *arm.peak_torque;
+  if (arm.peak_torque)
+    limits.peak_torque = limits.peak_torque ? limits.peak_torque->cwiseMin(*arm.peak_torque) : *arm.peak_torque;
   return limits;
 }
 
 std::optional<std::string> problemWith(const GateLimits& limits) {
   const auto wrong = [](const char* field, double value, const char* range) {
-    return std::string(field) + " = " + std::to_string(value) + " is out of range " + range + ". Take the arm's data sheet.";
+    return std::string(field) + " = " + std::to_string(value) + " is out of range " + range +
+           ". Take the arm's data sheet.";
   };
   const auto positive = [](double value) { return value > 0 && std::isfinite(value); };
   if (!positive(limits.peak_force)) return wrong("peak_force", limits.peak_force, "(0, inf) N");
   if (!positive(limits.continuous_force)) return wrong("continuous_force", limits.continuous_force, "(0, inf) N");
   if (!positive(limits.thermal_time)) return wrong("thermal_time", limits.thermal_time, "(0, inf) s");
   if (!positive(limits.slew)) return wrong("slew", limits.slew, "(0, inf) N/s");
-  if (!(limits.ramp_time >= 0 && std::isfinite(limits.ramp_time))) return wrong("ramp_time", limits.ramp_time, "[0, inf) s");
+  if (!(limits.ramp_time >= 0 && std::isfinite(limits.ramp_time)))
+    return wrong("ramp_time", limits.ramp_time, "[0, inf) s");
   if (!positive(limits.top_speed)) return wrong("top_speed", limits.top_speed, "(0, inf) m/s");
   if (!positive(limits.watchdog_time)) return wrong("watchdog_time", limits.watchdog_time, "(0, inf) s");
   for (int i = 0; limits.peak_torque && i < 3; ++i) {

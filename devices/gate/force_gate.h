@@ -1,18 +1,24 @@
-// force_gate: the last stage before a motor. Whatever comes in, what goes out is finite, bounded and slow; any doubt is zero, latched.
+// force_gate: the last stage before a motor. Whatever comes in, what goes out is finite,
+// bounded and slow; any doubt is zero, latched.
 //
-//   trips      not finite, fault before, invalid sample, over-speed, missed deadline, stale sample: zero at once, until an operator arms
+//   trips      not finite, fault before, invalid sample, over-speed, missed deadline, stale
+//              sample: zero at once, until an operator arms
 //   peak       |f| <= peak_force, direction kept
 //   torque     f / max(1, max_i |(J^T f)_i| / peak_torque_i): one common scale, direction kept
 //   ramp       f min(1, t_armed / ramp_time)
-//   thermal    |f|^2 <= f_cont^2 + (H - heat) / tau,   d heat / dt = |f|^2 - f_cont^2, heat >= 0,   tau = thermal_time / 10,
-//              H = (f_peak^2 - f_cont^2) (thermal_time + tau): peak_force from cold lasts thermal_time, then sinks smoothly to f_cont
-//   slew       f = s + (f - s) min(1, (slew dt - |s - f_last|) / |f - s|),   s = f_last within the torques of now:   |f - f_last| <= slew dt
+//   thermal    |f|^2 <= f_cont^2 + (H - heat) / tau,   d heat / dt = |f|^2 - f_cont^2, heat
+//                                                      >= 0,   tau = thermal_time / 10,
+//              H = (f_peak^2 - f_cont^2) (thermal_time + tau): peak_force from cold lasts
+//              thermal_time, then sinks smoothly to f_cont
+//   slew       f = s + (f - s) min(1, (slew dt - |s - f_last|) / |f - s|),   s = f_last within the
+//              torques of now:   |f - f_last| <= slew dt
 //
-// in this order, behind the passivity controller of grasp/passivity (tasks/run/tick/tick.cpp). Slew comes last, because its bound is one on
-// what the motor gets: a stage behind it could break it. It can delay the thermal stage by peak_force / slew at most. It keeps to the torque
-// bound: both s and f do, and so does the straight line between them. Only where the arm moved so far within a tick that the last force
-// overloads a joint by more than the slew can take back, torque wins over slew.
-// The torque stage needs both `peak_torque` and a sample that knows its joints. The stages and their order are ours.
+// in this order, behind the passivity controller of grasp/passivity (tasks/run/tick/tick.cpp). Slew comes last,
+// because its bound is one on what the motor gets: a stage behind it could break it. It can delay the thermal stage
+// by peak_force / slew at most. It keeps to the torque bound: both s and f do, and so does the straight line between
+// them. Only where the arm moved so far within a tick that the last force overloads a joint by more than the slew
+// can take back, torque wins over slew. The torque stage needs both `peak_torque` and a sample that knows its
+// joints. The stages and their order are ours.
 #pragma once
 #include <cstdint>
 #include <limits>
@@ -81,7 +87,8 @@ struct GateInput {
 void arm(GateState& state);
 // Latches zero force with a cause. The first cause stays until the next arm().
 void trip(GateState& state, Trip cause);
-// The force that may go to the motor [N]. |result| <= peak, |change| <= slew dt (but for trips: those cut to zero at once).
+// The force that may go to the motor [N]. |result| <= peak, |change| <= slew dt
+// (but for trips: those cut to zero at once).
 Vec3 gateForce(const GateLimits& limits, const GateInput& in, GateState& state);
 
 }  // namespace pincer::devices

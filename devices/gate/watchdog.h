@@ -2,10 +2,11 @@
 //
 //   expired  <=>  now - fed > limit at a check; from then on until arm() is called
 //
-// The servo thread feeds after every finished tick and asks expired() before it commands a force; a second thread checks, at least four
-// times per limit, and on expiry commands zero force itself. feed(), check() and expired() take no lock and never block. Time is the
-// caller's monotonic clock in nanoseconds, so a test brings its own. A stalled servo that wakes up after the expiry sees the latch: what it
-// was about to send may still reach the motor once, in the moment between its question and its command.
+// The servo thread feeds after every finished tick and asks expired() before it commands a force; a second thread
+// checks, at least four times per limit, and on expiry commands zero force itself. feed(), check() and expired() take
+// no lock and never block. Time is the caller's monotonic clock in nanoseconds, so a test brings its own. A stalled
+// servo that wakes up after the expiry sees the latch: what it was about to send may still reach the motor once, in the
+// moment between its question and its command.
 #pragma once
 #include <atomic>
 #include <cstdint>

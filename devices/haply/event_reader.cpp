@@ -20,7 +20,9 @@ class EventSink final : public JsonSink {
   ReadError error() const { return error_; }
   bool named() const { return name_ && level_; }
 
-  bool begin(std::string_view path, bool array) override { return !(path.empty() && array) || fail(ReadError::kWrongType); }
+  bool begin(std::string_view path, bool array) override {
+    return !(path.empty() && array) || fail(ReadError::kWrongType);
+  }
   bool end(std::string_view, bool) override { return true; }
   bool value(std::string_view path, const JsonScalar& value) override {
     const auto* text = std::get_if<std::string_view>(&value);
@@ -136,8 +138,9 @@ std::optional<ServiceVersion> readVersion(std::string_view body) noexcept {
   try {
     VersionSink sink;
     if (walkJson(body, sink)) return sink.found;
-    return body.size() < 100 && body.find('{') == std::string_view::npos ? versionIn(body) : std::nullopt;  // plain text
-  } catch (...) {                                                                                           // out of memory
+    // plain text
+    return body.size() < 100 && body.find('{') == std::string_view::npos ? versionIn(body) : std::nullopt;
+  } catch (...) {  // out of memory
     return std::nullopt;
   }
 }

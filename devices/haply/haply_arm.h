@@ -1,7 +1,9 @@
-// haply_arm: one Inverse3 of a HaplyHost as an arm. The tick reads and writes two triple buffers; all texts are the host's thread's.
+// haply_arm: one Inverse3 of a HaplyHost as an arm. The tick reads and writes two triple
+// buffers; all texts are the host's thread's.
 //
-// A figure that no page of the maker tells, and nobody here has measured, is absent (mass and damping of the tip) or careful: 2 N at peak until the
-// arm's calibration says how soon it goes idle by itself (docs/devices/haply.md), 300 N/m for some 2 ms of delay.
+// A figure that no page of the maker tells, and nobody here has measured, is absent (mass and damping of the tip)
+// or careful: 2 N at peak until the arm's calibration says how soon it goes idle by itself
+// (docs/devices/haply.md), 300 N/m for some 2 ms of delay.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -18,8 +20,8 @@ namespace pincer::devices::haply {
 inline constexpr std::int64_t kWishLife = 4 * kMillisecond;  // an older force is zero
 inline constexpr double kCarefulPeak = 2, kPeak = 5;         // before and after idle_after was measured [N], ours
 inline constexpr double kMostPeak = 8.5;                     // whatever a file says: the gate's [N]
-inline constexpr double kSoonIdle = 0.1;                     // an arm that goes idle by itself so soon may push kPeak [s]
-inline constexpr double kContinuous = 1.4;                   // [N]
+inline constexpr double kSoonIdle = 0.1;    // an arm that goes idle by itself so soon may push kPeak [s]
+inline constexpr double kContinuous = 1.4;  // [N]
 
 struct HaplyArmSettings {
   std::string id, grip;

@@ -6,8 +6,8 @@
 // H (preset "defaults"): z up, x right, the arm reaches to -y. D: z where the arm reaches, y up. c is the middle of the
 // workspace; mount_turn is 0 for arms that face each other; side by side before the operator -pi/2 (index finger) and
 // +pi/2 (thumb). q_align turns the grip's own axes to the finger's, and stays as long as the grip sits in its handle as
-// it does. A grip's yaw, about the vertical, may drift: grip_yaw. Another q_align would take a drift out where the finger
-// points now, and be wrong elsewhere by up to the drift times the turn from there.
+// it does. A grip's yaw, about the vertical, may drift: grip_yaw. Another q_align would take a drift out where the
+// finger points now, and be wrong elsewhere by up to the drift times the turn from there.
 #pragma once
 #include "pincer/devices/math.h"
 

@@ -40,27 +40,30 @@ ServiceCheck checkService(const ServicePlace& place, double timeout) {
   const auto answer = httpGet(place, "/version", timeout);
   if (!answer)
     return refuse(
-        fmt::format("Nobody answers as Haply's service at {}. Start it: systemctl start haply-inverse-service.service; another port: "
+        fmt::format("Nobody answers as Haply's service at {}. Start it: systemctl start haply-inverse-service.service; "
+                    "another port: "
                     "--service HOST:PORT (docs/devices/haply.md).",
                     where));
   const auto version = answer->status == 200 ? readVersion(answer->body) : std::nullopt;
   if (!version)
-    return refuse(
-        fmt::format("The program at {} doesn't tell its version as Haply's service does (HTTP {}). Is another program on the port?", where,
-                    answer->status));
+    return refuse(fmt::format(
+        "The program at {} doesn't tell its version as Haply's service does (HTTP {}). Is another program on the port?",
+        where, answer->status));
   if (version->major != 3 || version->minor < 1)
-    return refuse(fmt::format("Haply's service at {} is {}.{}; pincer knows 3.1 and later ones of 3. Install one: docs/devices/haply.md.",
-                              where, version->major, version->minor));
+    return refuse(fmt::format(
+        "Haply's service at {} is {}.{}; pincer knows 3.1 and later ones of 3. Install one: docs/devices/haply.md.",
+        where, version->major, version->minor));
   const auto scale = httpGet(place, "/settings/devices/force_scale", timeout);
   const auto factor = scale && scale->status == 200 ? readNumber(scale->body) : std::nullopt;
   if (factor && *factor != 1)
     return refuse(
-        fmt::format("Haply's service scales every force by {} (settings/devices/force_scale). Set it to 1 in Haply Hub: pincer never "
+        fmt::format("Haply's service scales every force by {} (settings/devices/force_scale). Set it to 1 in Haply "
+                    "Hub: pincer never "
                     "changes what counts for all programs.",
                     *factor));
   if (!factor && version->minor >= 5)
-    return refuse(
-        fmt::format("Haply's service at {} doesn't tell its force scale (HTTP {}). Restart it.", where, scale ? scale->status : 0));
+    return refuse(fmt::format("Haply's service at {} doesn't tell its force scale (HTTP {}). Restart it.", where,
+                              scale ? scale->status : 0));
   return {"", *version};
 }
 
@@ -92,11 +95,13 @@ class HaplyHost::Life final : public PortSink {
   ForceSpelling spelling_ = ForceSpelling::kVector;
 };
 
-HaplyHost::HaplyHost(HaplyHostOptions options, const OpenHaplyPort& open) : options_(std::move(options)), open_(open), wake_fd_(-1) {
+HaplyHost::HaplyHost(HaplyHostOptions options, const OpenHaplyPort& open)
+    : options_(std::move(options)), open_(open), wake_fd_(-1) {
   const ServiceCheck check = checkService(options_.service, options_.timeout);
   if (!check.problem.empty()) throw std::runtime_error(check.problem);
   version_ = check.version;
-  for (const HaplyArmSettings& arm : options_.arms) arms_.push_back(std::make_unique<HaplyArm>(arm, [this] { wake(); }));
+  for (const HaplyArmSettings& arm : options_.arms)
+    arms_.push_back(std::make_unique<HaplyArm>(arm, [this] { wake(); }));
   auto port = open_(options_.service, version_.minor >= 4, options_.timeout);
   wake_fd_ = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
   if (wake_fd_ < 0) throw std::runtime_error("No file descriptor is free. Close programs, or raise `ulimit -n`.");
@@ -139,9 +144,10 @@ void HaplyHost::waitReady(double timeout) {
     if (!why.empty() && all(DeviceState::kFaulted)) throw std::runtime_error(why);
     if (usb::monotonicNs() > until)
       throw std::runtime_error(
-          why.empty() ? "The Inverse3 didn't become ready. Calibrate it: hold the grip's magnet to the mark until its light is "
-                        "white."
-                      : why);
+          why.empty()
+              ? "The Inverse3 didn't become ready. Calibrate it: hold the grip's magnet to the mark until its light is "
+                "white."
+              : why);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
@@ -156,8 +162,8 @@ SessionOptions HaplyHost::sessionOptions() {
   session.version = version_;
   session.trips = &trips_;
   session.gate_gain = options_.gate_gain;
-  session.profile =
-      fmt::format("org.pincer:{:08x}", static_cast<std::uint32_t>(usb::monotonicNs() / 1000) ^ static_cast<std::uint32_t>(::getpid()));
+  session.profile = fmt::format("org.pincer:{:08x}", static_cast<std::uint32_t>(usb::monotonicNs() / 1000) ^
+                                                         static_cast<std::uint32_t>(::getpid()));
   return session;
 }
 
@@ -199,7 +205,8 @@ void HaplyHost::live(HaplyPort& port) {
     const std::unique_lock lock(slow_, std::try_to_lock);
     if (lock.owns_lock()) counts_ = session.counts();
   }
-  if (!port.open()) note("The connection to Haply's service is lost. Is it running? systemctl status haply-inverse-service.service");
+  if (!port.open())
+    note("The connection to Haply's service is lost. Is it running? systemctl status haply-inverse-service.service");
   if (session.phase() == SessionPhase::kRefused) note(session.complaint());
   tell(session, false);
   leave(port, session, life);

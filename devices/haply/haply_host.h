@@ -1,8 +1,10 @@
-// haply_host: one connection to Haply's service with one or two arms on it, and the thread that alone reads and writes its texts.
+// haply_host: one connection to Haply's service with one or two arms on it, and the
+// thread that alone reads and writes its texts.
 //
-// The thread sends both arms' newest forces every half millisecond, zeros at once; it reconnects, after 0.25 to 2 s, while no arm is armed.
-// Its end is 0.1 s of answered zeros and a close frame. The service has no deadline of its own that is documented: a program that is
-// stopped as a whole may leave the last force on; keep a hand at the device's power switch (docs/devices/haply.md).
+// The thread sends both arms' newest forces every half millisecond, zeros at once; it reconnects, after 0.25 to 2 s,
+// while no arm is armed. Its end is 0.1 s of answered zeros and a close frame. The service has no deadline of its
+// own that is documented: a program that is stopped as a whole may leave the last force on; keep a hand at the
+// device's power switch (docs/devices/haply.md).
 #pragma once
 #include <atomic>
 #include <memory>

@@ -9,8 +9,8 @@ namespace pincer::devices::haply {
 namespace {
 
 bool isPlain(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.' || c == ':' ||
-         c == ' ';
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' ||
+         c == '.' || c == ':' || c == ' ';
 }
 
 // Text into a buffer that never grows.
@@ -46,15 +46,16 @@ void writeForce(Writer& out, const ForceCommand& command, ForceSpelling spelling
     if (command.gate_gain) out << R"(,"force_gate":{"gain":)" << *command.gate_gain << "}";
     out << "},";
   }
-  out << R"("commands":{"set_cursor_force":{")" << (spelling == ForceSpelling::kVector ? "vector" : "values") << R"(":{"x":)"
-      << command.f_H.x() << R"(,"y":)" << command.f_H.y() << R"(,"z":)" << command.f_H.z() << "}}}}";
+  out << R"("commands":{"set_cursor_force":{")" << (spelling == ForceSpelling::kVector ? "vector" : "values")
+      << R"(":{"x":)" << command.f_H.x() << R"(,"y":)" << command.f_H.y() << R"(,"z":)" << command.f_H.z() << "}}}}";
 }
 
 }  // namespace
 
 std::optional<Label> Label::of(std::string_view text) {
   Label label;
-  if (text.empty() || text.size() > label.text_.size() || !std::all_of(text.begin(), text.end(), isPlain)) return std::nullopt;
+  if (text.empty() || text.size() > label.text_.size() || !std::all_of(text.begin(), text.end(), isPlain))
+    return std::nullopt;
   std::copy(text.begin(), text.end(), label.text_.begin());
   label.size_ = static_cast<std::uint8_t>(text.size());
   return label;
@@ -62,7 +63,8 @@ std::optional<Label> Label::of(std::string_view text) {
 
 const DeviceReport* ServiceMessage::find(std::string_view id) const {
   const auto end = devices.begin() + static_cast<std::ptrdiff_t>(count);
-  const auto found = std::find_if(devices.begin(), end, [&](const DeviceReport& device) { return device.id.view() == id; });
+  const auto found =
+      std::find_if(devices.begin(), end, [&](const DeviceReport& device) { return device.id.view() == id; });
   return found == end ? nullptr : &*found;
 }
 
@@ -90,8 +92,8 @@ const char* describe(ReadError error) {
   return "unknown";
 }
 
-std::string_view writeForces(std::span<char, kMostCommand> buffer, std::span<const ForceCommand> commands, ForceSpelling spelling,
-                             std::string_view profile, bool full_state) {
+std::string_view writeForces(std::span<char, kMostCommand> buffer, std::span<const ForceCommand> commands,
+                             ForceSpelling spelling, std::string_view profile, bool full_state) {
   Writer out(buffer);
   out << "{";
   if (!profile.empty() || full_state) out << R"("session":{)";
@@ -112,7 +114,8 @@ std::string_view writeProbes(std::span<char, kMostCommand> buffer, std::span<con
   Writer out(buffer);
   out << R"({"inverse3":[)";
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    out << (i > 0 ? "," : "") << R"({"device_id":")" << devices[i].id.view() << R"(","commands":{"probe_position":{}}})";
+    out << (i > 0 ? "," : "") << R"({"device_id":")" << devices[i].id.view()
+        << R"(","commands":{"probe_position":{}}})";
   }
   out << "]}";
   return out.text();

@@ -1,10 +1,11 @@
 // haply_messages: texts of Haply's service (Inverse SDK 3.1 to 3.5, docs/devices/haply.md) to plain values and back.
 //
-// One WebSocket text frame is one JSON object. The service sends the inventory once, then one state message per message of ours.
-// Reading refuses and never mends: an unsound message gives an error, and nothing of it is used. Unknown keys are left alone. A missing
-// component of a vector is an error; a vector that isn't there at all is absent, never zero.
-// Frames: the service's application space H: right-handed, z up, x right, the arm reaches to -y. Units: m, m/s, N.
-// Sources: docs.haply.co, pages WebSocket Protocol, Simulation Channel, Control Commands, Events & Monitoring, HTTP (2025).
+// One WebSocket text frame is one JSON object. The service sends the inventory once, then one state message per
+// message of ours. Reading refuses and never mends: an unsound message gives an error, and nothing of it is
+// used. Unknown keys are left alone. A missing component of a vector is an error; a vector that isn't there at
+// all is absent, never zero. Frames: the service's application space H: right-handed, z up, x right, the arm
+// reaches to -y. Units: m, m/s, N. Sources: docs.haply.co, pages WebSocket Protocol, Simulation Channel, Control
+// Commands, Events & Monitoring, HTTP (2025).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -111,7 +112,8 @@ struct DeviceIds {
 };
 DeviceIds readDeviceIds(std::string_view body) noexcept;
 
-// How a force's components are spelled: 3.5's pages say "vector", known clients of 3.1 to 3.4 "values". The service ignores the other one.
+// How a force's components are spelled: 3.5's pages say "vector", known clients of 3.1 to 3.4
+// "values". The service ignores the other one.
 enum class ForceSpelling : std::uint8_t { kVector, kValues };
 
 struct ForceCommand {
@@ -124,8 +126,8 @@ struct ForceCommand {
 // A message, written into `buffer`.
 //   profile     of the session's first message; empty in all others
 //   full_state  asks for config in the answer
-std::string_view writeForces(std::span<char, kMostCommand> buffer, std::span<const ForceCommand> commands, ForceSpelling spelling,
-                             std::string_view profile = {}, bool full_state = false);
+std::string_view writeForces(std::span<char, kMostCommand> buffer, std::span<const ForceCommand> commands,
+                             ForceSpelling spelling, std::string_view profile = {}, bool full_state = false);
 // Asks for states without commanding anything.
 std::string_view writeProbes(std::span<char, kMostCommand> buffer, std::span<const ForceCommand> devices);
 

@@ -139,16 +139,17 @@ class BeastPort final : public HaplyPort {
     const std::string why = states_.open(place.port, nanoseconds(timeout));
     if (!why.empty()) {
       throw std::runtime_error(
-          fmt::format("Nobody answers as Haply's service at {}:{} ({}). Start it: systemctl start haply-inverse-service.service; another "
+          fmt::format("Nobody answers as Haply's service at {}:{} ({}). Start it: systemctl start "
+                      "haply-inverse-service.service; another "
                       "port: --service HOST:PORT (docs/devices/haply.md).",
                       place.host, place.port, why));
     }
     const std::string deaf = events ? events_.open(place.events_port, nanoseconds(timeout)) : "";
     if (!deaf.empty()) {
-      throw std::runtime_error(
-          fmt::format("Haply's service doesn't tell its safety events at {}:{} ({}). Restart it; another port: --service "
-                      "HOST:PORT:EVENTS.",
-                      place.host, place.events_port, deaf));
+      throw std::runtime_error(fmt::format(
+          "Haply's service doesn't tell its safety events at {}:{} ({}). Restart it; another port: --service "
+          "HOST:PORT:EVENTS.",
+          place.host, place.events_port, deaf));
     }
   }
   bool open() const override { return states_.isOpen(); }

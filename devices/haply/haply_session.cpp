@@ -23,7 +23,9 @@ constexpr int kMostUnsound = 3;                         // in a row
 }  // namespace
 
 HaplySession::HaplySession(SessionOptions options, std::int64_t now)
-    : options_(std::move(options)), began_(now), spelling_(options_.version.minor >= 5 ? ForceSpelling::kVector : ForceSpelling::kValues) {
+    : options_(std::move(options)),
+      began_(now),
+      spelling_(options_.version.minor >= 5 ? ForceSpelling::kVector : ForceSpelling::kValues) {
   for (std::size_t i = 0; i < options_.arms.size(); ++i) {
     const auto id = Label::of(options_.arms[i].arm);
     if (!id || i >= kMostArms) {
@@ -90,7 +92,8 @@ Vec3 HaplySession::forceNow(const ArmState& arm) const {
 // Both signs have to come back; the other spelling gets one try of each.
 void HaplySession::testEcho(ArmState& arm, std::int64_t now) {
   if (!arm.armed || arm.test == Echo::kGood || arm.test == Echo::kUntested || now - arm.test_began < kEchoStep) return;
-  if (arm.echo_ns < arm.test_began + kEchoComes && now - arm.test_began < kSilence) return;  // a service that is late isn't deaf
+  // a service that is late isn't deaf
+  if (arm.echo_ns < arm.test_began + kEchoComes && now - arm.test_began < kSilence) return;
   const Vec3 wanted(0, 0, arm.test == Echo::kPlus ? kEchoForce : -kEchoForce);
   judgeEcho(arm, arm.echo && (*arm.echo - wanted).norm() <= kEchoError, now);
 }
@@ -122,12 +125,17 @@ void HaplySession::judgeEcho(ArmState& arm, bool follows, std::int64_t now) {
 void HaplySession::advance(std::int64_t now) {
   if (phase_ == SessionPhase::kInventory && now - began_ > kInventoryTime)
     refuse(
-        "The program at that port doesn't tell which devices it has, as Haply's service does. Is another program on the port (--service)?");
+        "The program at that port doesn't tell which devices it has, as Haply's service does. Is another program on "
+        "the port (--service)?");
   if (phase_ == SessionPhase::kSettling && now - began_ > kSettleTime) phase_ = SessionPhase::kReady;
   if (under_way_ > 0 && now - questions_[first_question_].ns > kSilence)
-    doubt("Haply's service didn't answer for 250 ms. Is it running (systemctl status haply-inverse-service)? Is the computer busy?");
+    doubt(
+        "Haply's service didn't answer for 250 ms. Is it running (systemctl status haply-inverse-service)? Is the "
+        "computer busy?");
   if (events_lost_ >= 0 && now - events_lost_ > kEventsMayBeLost && phase_ != SessionPhase::kRefused)
-    doubt("The service's event channel is lost: its safety events can't be heard. Restart the service, then begin again.");
+    doubt(
+        "The service's event channel is lost: its safety events can't be heard. Restart the service, then begin "
+        "again.");
   for (ArmState& arm : arms_) testEcho(arm, now);
 }
 
@@ -158,7 +166,8 @@ std::string_view HaplySession::writeNow(std::int64_t now) {
   }
   commanded_ = true;
   remember(now, full);
-  return writeForces(buffer_, commands, spelling_, first ? std::string_view(options_.profile) : std::string_view{}, full);
+  return writeForces(buffer_, commands, spelling_, first ? std::string_view(options_.profile) : std::string_view{},
+                     full);
 }
 
 std::string_view HaplySession::zeros() {
@@ -189,18 +198,20 @@ void HaplySession::received(std::string_view text, std::int64_t now) {
   }
   if (phase_ == SessionPhase::kInventory) {
     if (error == ReadError::kNone) return takeInventory(message_, now);
-    return refuse(
-        fmt::format("The program at that port sends what Haply's service doesn't: {}. Is another program on the port, or a "
-                    "service older than 3.1 or newer than 3.5?",
-                    describe(error)));
+    return refuse(fmt::format(
+        "The program at that port sends what Haply's service doesn't: {}. Is another program on the port, or a "
+        "service older than 3.1 or newer than 3.5?",
+        describe(error)));
   }
   if (under_way_ == 0)
-    return doubt("Haply's service sent a state that nobody asked for: what answers what isn't certain any more. Restart it.");
+    return doubt(
+        "Haply's service sent a state that nobody asked for: what answers what isn't certain any more. Restart it.");
   const UnderWay question = questions_[first_question_];
   first_question_ = (first_question_ + 1) % kMostUnderWay;
   --under_way_;
   const auto step = static_cast<std::size_t>((now - question.ns) / kTripStep);
-  if (options_.trips != nullptr) (*options_.trips)[std::min(step, options_.trips->size() - 1)].fetch_add(1, std::memory_order_relaxed);
+  if (options_.trips != nullptr)
+    (*options_.trips)[std::min(step, options_.trips->size() - 1)].fetch_add(1, std::memory_order_relaxed);
   ++counts_.answered;
   if (error == ReadError::kNone) {
     unsound_in_a_row_ = 0;
@@ -209,7 +220,8 @@ void HaplySession::received(std::string_view text, std::int64_t now) {
     ++counts_.unsound;
     invalidate();
     if (++unsound_in_a_row_ >= kMostUnsound)
-      doubt(fmt::format("Haply's service sent {} unsound messages in a row: {}. Restart it.", kMostUnsound, describe(error)));
+      doubt(fmt::format("Haply's service sent {} unsound messages in a row: {}. Restart it.", kMostUnsound,
+                        describe(error)));
   }
   before_answered_ = question.ns;
 }

@@ -1,13 +1,14 @@
-// haply_session: what is said to Haply's service over one connection, and what makes it doubtful; without socket, thread or clock.
+// haply_session: what is said to Haply's service over one connection, and what makes it
+// doubtful; without socket, thread or clock.
 //
 //   inventory -> (homing) -> configuring -> settling -> ready          any of them -> refused, with a sentence
 //
-// The service is a program on the desktop: it is assumed to keep the last force for ever. So zeros are sent, never just silence, and any
-// doubt is zero, latched until the operator arms again. One message is under way at a time; zeros that can't wait go out at once, up to 8.
-// Replies carry neither number nor time: they are matched by order, and a sample's time is when the message before the answered one was
-// sent, because a reply may be one message old.
-// After arming the service has to echo +-0.05 N, in the spelling of its version or the other one: an arm deaf to that is deaf to a zero.
-// The thresholds are ours (docs/devices/haply.md); none of them has met hardware.
+// The service is a program on the desktop: it is assumed to keep the last force for ever. So zeros are sent, never just
+// silence, and any doubt is zero, latched until the operator arms again. One message is under way at a time; zeros that
+// can't wait go out at once, up to 8. Replies carry neither number nor time: they are matched by order, and a sample's
+// time is when the message before the answered one was sent, because a reply may be one message old.
+// After arming the service has to echo +-0.05 N, in the spelling of its version or the other one: an arm deaf to that
+// is deaf to a zero. The thresholds are ours (docs/devices/haply.md); none of them has met hardware.
 #pragma once
 #include <array>
 #include <atomic>
@@ -34,8 +35,8 @@ struct ArmPlan {
 };
 
 struct SessionOptions {
-  std::vector<ArmPlan> arms;             // 1 or 2
-  ServiceVersion version{3, 5};          // decides the spelling that is tried first, and which settings the service has to tell
+  std::vector<ArmPlan> arms;     // 1 or 2
+  ServiceVersion version{3, 5};  // decides the spelling that is tried first, and which settings the service has to tell
   std::string profile = "org.pincer:0";  // new in every run, so that Haply Hub has no tweaks for it
   std::optional<double> gate_gain = {};  // of the force gate; absent: left as it is
   RoundTrips* trips = nullptr;           // counted there, if anywhere

@@ -18,8 +18,10 @@ constexpr double kEchoOver = 0.2, kEchoOverShare = 0.05;   // the echo may be ab
 constexpr double kAttenuated = 0.8;                        // an echo below this share of what was sent is counted
 constexpr std::int64_t kConfigureMayLast = 500 * kMillisecond;
 
-constexpr std::array<std::string_view, 4> kSafetyTypes{"ebrake_triggered", "stall_detected", "stability_ceiling", "fod_stage_changed"};
-constexpr std::array<std::string_view, 4> kLosses{"device-disconnected", "device-busy", "device-calibration-failed", "device-sleep"};
+constexpr std::array<std::string_view, 4> kSafetyTypes{"ebrake_triggered", "stall_detected", "stability_ceiling",
+                                                       "fod_stage_changed"};
+constexpr std::array<std::string_view, 4> kLosses{"device-disconnected", "device-busy", "device-calibration-failed",
+                                                  "device-sleep"};
 
 template <typename Names>
 bool isIn(const Names& names, std::string_view name) {
@@ -33,19 +35,22 @@ bool HaplySession::identifies(const ServiceMessage& message) {
     const DeviceReport* arm = message.find(plan.arm);
     if (arm == nullptr || arm->family != DeviceFamily::kInverse3) {
       refuse(
-          fmt::format("Haply's service has no Inverse3 {}. Plug it in, switch it on; see what is there: pincer devices list --devices "
+          fmt::format("Haply's service has no Inverse3 {}. Plug it in, switch it on; see what is there: pincer devices "
+                      "list --devices "
                       "haply",
                       plan.arm));
       return false;
     }
     if (arm->in_use.value_or(false)) {
-      refuse(
-          fmt::format("Inverse3 {} is in use by another session of Haply's service. Close that program, or Haply Hub's demo.", plan.arm));
+      refuse(fmt::format(
+          "Inverse3 {} is in use by another session of Haply's service. Close that program, or Haply Hub's demo.",
+          plan.arm));
       return false;
     }
     const DeviceReport* grip = plan.grip.empty() ? nullptr : message.find(plan.grip);
     if (!plan.grip.empty() && (grip == nullptr || grip->family == DeviceFamily::kInverse3)) {
-      refuse(fmt::format("Haply's service has no VerseGrip {}. Wake it by a press of its button, or leave --grips out.", plan.grip));
+      refuse(fmt::format("Haply's service has no VerseGrip {}. Wake it by a press of its button, or leave --grips out.",
+                         plan.grip));
       return false;
     }
   }
@@ -80,7 +85,8 @@ void HaplySession::takeState(const ServiceMessage& message, const UnderWay& ques
   bool homing = false;
   for (std::size_t i = 0; i < options_.arms.size(); ++i) {
     const DeviceReport* report = message.find(options_.arms[i].arm);
-    if (report == nullptr) return doubt(fmt::format("Inverse3 {} is gone. Check its cable and its power supply.", options_.arms[i].arm));
+    if (report == nullptr)
+      return doubt(fmt::format("Inverse3 {} is gone. Check its cable and its power supply.", options_.arms[i].arm));
     homing |= report->calibrated == false;
     if (phase_ == SessionPhase::kHoming) continue;
     takeArm(i, *report, question, now);
@@ -96,8 +102,9 @@ void HaplySession::takeArm(std::size_t i, const DeviceReport& report, const Unde
   ArmState& arm = arms_[i];
   checkFlags(report);
   if (report.transformed)
-    doubt(fmt::format("Inverse3 {} has a transform that isn't the identity: another session, or Haply Hub, set it. Reset it there.",
-                      report.id.view()));
+    doubt(fmt::format(
+        "Inverse3 {} has a transform that isn't the identity: another session, or Haply Hub, set it. Reset it there.",
+        report.id.view()));
   if (question.full) checkConfig(arm, report, now);
   if (report.f_H) checkForce(arm, report);
   if (report.p_H) checkPlace(arm, report, now);
@@ -123,7 +130,8 @@ void HaplySession::takeGrip(std::size_t i, const ServiceMessage& message) {
   arms_[i].reading.buttons = grip->buttons;
 }
 
-// All times are those of the message before the answered one: a service that was away for a while isn't one that pushes on its own.
+// All times are those of the message before the answered one: a service that was away for
+// a while isn't one that pushes on its own.
 void HaplySession::checkForce(ArmState& arm, const DeviceReport& report) {
   const std::int64_t then = before_answered_;
   double most = 0;
@@ -133,7 +141,8 @@ void HaplySession::checkForce(ArmState& arm, const DeviceReport& report) {
   const double echo = report.f_H->norm();
   if (echo > most * (1 + kEchoOverShare) + kEchoOver) {
     doubt(
-        fmt::format("Inverse3 {} renders {:.2f} N, but {:.2f} N at most were asked for: another session commands it, or its force scale "
+        fmt::format("Inverse3 {} renders {:.2f} N, but {:.2f} N at most were asked for: another session commands it, "
+                    "or its force scale "
                     "was changed. Close other programs.",
                     report.id.view(), echo, most));
   }
@@ -155,7 +164,8 @@ void HaplySession::checkPlace(ArmState& arm, const DeviceReport& report, std::in
   arm.pushed_when_still |= pushed;
   if (arm.pushed_when_still && now - arm.still_since > kFrozenAfter)
     doubt(
-        fmt::format("Inverse3 {} tells the same place to the bit although its force changed: its encoders seem to be frozen. Switch it "
+        fmt::format("Inverse3 {} tells the same place to the bit although its force changed: its encoders seem to be "
+                    "frozen. Switch it "
                     "off and on.",
                     report.id.view()));
 }
@@ -163,11 +173,13 @@ void HaplySession::checkPlace(ArmState& arm, const DeviceReport& report, std::in
 // The odd setting, as a sentence; empty: all is as the session wants it. Services before 3.5 tell less.
 std::string HaplySession::oddIn(const DeviceConfig& config, const Label& id) const {
   const auto odd = [&](const char* what, std::string_view is, std::string_view wanted) {
-    return fmt::format("Inverse3 {}: its {} is {}, not {}. Haply Hub, or another session, set it: reset it there.", id.view(), what,
-                       is.empty() ? "not told" : is, wanted);
+    return fmt::format("Inverse3 {}: its {} is {}, not {}. Haply Hub, or another session, set it: reset it there.",
+                       id.view(), what, is.empty() ? "not told" : is, wanted);
   };
   const bool tells = options_.version.minor >= 5;
-  const auto wrong = [&](const Label& is, std::string_view wanted) { return is.view() != wanted && (tells || !is.view().empty()); };
+  const auto wrong = [&](const Label& is, std::string_view wanted) {
+    return is.view() != wanted && (tells || !is.view().empty());
+  };
   if (wrong(config.preset, "defaults")) return odd("preset", config.preset.view(), "defaults");
   if (wrong(config.basis, "XYZ")) return odd("basis", config.basis.view(), "XYZ");
   if (config.mounted) return odd("mount", "turned or moved", "the identity");
@@ -188,23 +200,27 @@ void HaplySession::checkConfig(ArmState& arm, const DeviceReport& report, std::i
       refuse(odd);
     }
   } else if (arm.config && report.config.value_or(DeviceConfig{}) != *arm.config) {
-    doubt(fmt::format("The settings of Inverse3 {} changed during the session. Haply Hub or another session did it: close it.",
-                      report.id.view()));
+    doubt(fmt::format(
+        "The settings of Inverse3 {} changed during the session. Haply Hub or another session did it: close it.",
+        report.id.view()));
   }
 }
 
 void HaplySession::heard(std::string_view text, std::int64_t) {
   ServiceEvent event;
   const ReadError error = readEvent(text, event);
-  if (error != ReadError::kNone) return doubt(fmt::format("An event of Haply's service can't be read: {}. Restart it.", describe(error)));
+  if (error != ReadError::kNone)
+    return doubt(fmt::format("An event of Haply's service can't be read: {}. Restart it.", describe(error)));
   const auto end = options_.arms.end();
-  const bool ours = !event.device ||
-                    std::find_if(options_.arms.begin(), end, [&](const ArmPlan& plan) { return plan.arm == event.device->view(); }) != end;
+  const bool ours = !event.device || std::find_if(options_.arms.begin(), end, [&](const ArmPlan& plan) {
+                                       return plan.arm == event.device->view();
+                                     }) != end;
   const bool loss = isIn(kLosses, event.name.view());
   const bool safety = event.level >= EventLevel::kWarning && isIn(kSafetyTypes, event.safety.view());
   if (!ours || !(loss || safety || event.level >= EventLevel::kError)) return;
-  doubt(fmt::format("Haply's service reports {}{}{}: {}. Look at the device's light, clear the cause.", event.name.view(),
-                    event.safety.view().empty() ? "" : " ", event.safety.view(), event.words.data()));
+  doubt(fmt::format("Haply's service reports {}{}{}: {}. Look at the device's light, clear the cause.",
+                    event.name.view(), event.safety.view().empty() ? "" : " ", event.safety.view(),
+                    event.words.data()));
 }
 
 }  // namespace pincer::devices::haply

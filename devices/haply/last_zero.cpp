@@ -33,7 +33,8 @@ void sayZeros() {
     if (slot.writing.load()) {
       ::shutdown(descriptor, SHUT_RDWR);
     } else {
-      [[maybe_unused]] const auto sent = ::send(descriptor, slot.frame.data(), slot.size.load(), MSG_NOSIGNAL | MSG_DONTWAIT);
+      [[maybe_unused]] const auto sent =
+          ::send(descriptor, slot.frame.data(), slot.size.load(), MSG_NOSIGNAL | MSG_DONTWAIT);
     }
   }
 }
@@ -43,8 +44,8 @@ void pauseMs(long ms) {
   ::nanosleep(&time, nullptr);
 }
 
-// The first zero may overtake a force that is being sent, the second doesn't. A service that loses its client while it answers may not
-// read on: so it gets time to.
+// The first zero may overtake a force that is being sent, the second doesn't. A service that loses its client while it
+// answers may not read on: so it gets time to.
 extern "C" void pincerOnDeath(int signal) {
   dying = true;
   for (int i = 0; i < 2; ++i) {
@@ -78,7 +79,8 @@ void LastZero::set(int descriptor, std::string_view text) {
   slot.frame.fill(0);
   slot.frame[0] = '\x81';
   slot.frame[1] = static_cast<char>(0x80 | (is_long ? kShortest : text.size()));
-  if (is_long) slot.frame[2] = static_cast<char>(text.size() >> 8), slot.frame[3] = static_cast<char>(text.size() & 255);
+  if (is_long)
+    slot.frame[2] = static_cast<char>(text.size() >> 8), slot.frame[3] = static_cast<char>(text.size() & 255);
   const std::size_t header = is_long ? kHeader : kHeader - 2;
   std::copy(text.begin(), text.end(), slot.frame.begin() + static_cast<std::ptrdiff_t>(header));
   slot.size = text.size() + header;

@@ -1,7 +1,9 @@
-// last_zero: a program that dies of SIGSEGV, SIGBUS, SIGFPE or SIGABRT sends Haply's service one more message: zero force.
+// last_zero: a program that dies of SIGSEGV, SIGBUS, SIGFPE or SIGABRT sends
+// Haply's service one more message: zero force.
 //
-// The message is a ready-made WebSocket frame, so that the handler of the signal does nothing but send(), twice within 20 ms; where another
-// frame is half sent it shuts the connection down instead. Then the signal does what it always does. SIGKILL and SIGSTOP can't be handled.
+// The message is a ready-made WebSocket frame, so that the handler of the signal does nothing but send(), twice within
+// 20 ms; where another frame is half sent it shuts the connection down instead. Then the signal does what it always
+// does. SIGKILL and SIGSTOP can't be handled.
 #pragma once
 #include <atomic>
 #include <string_view>
@@ -23,7 +25,8 @@ class LastZero {
 
   // True once the program dies: nobody else may send any more.
   static bool isLast();
-  // Handlers for the four signals, but for those that have one already. For a program's main(), or whoever opens motors in one.
+  // Handlers for the four signals, but for those that have one already. For a
+  // program's main(), or whoever opens motors in one.
   static void install();
 
  private:

@@ -11,8 +11,30 @@ namespace {
 constexpr std::array<std::string_view, 3> kFamilies{"inverse3", "verse_grip", "wireless_verse_grip"};
 
 // Slots of what is known of a device: numbers, then flags, then texts.
-enum NumberSlot : std::size_t { kPlace = 0, kVelocity = 3, kForce = 6, kTurn = 9, kDamping = 13, kGate, kGravity, kNumbers };
-enum FlagSlot : std::size_t { kCalibrated, kInUse, kPower, kReady, kStarted, kConnected, kAwake, kButton, kA, kB, kC, kFlags };
+enum NumberSlot : std::size_t {
+  kPlace = 0,
+  kVelocity = 3,
+  kForce = 6,
+  kTurn = 9,
+  kDamping = 13,
+  kGate,
+  kGravity,
+  kNumbers
+};
+enum FlagSlot : std::size_t {
+  kCalibrated,
+  kInUse,
+  kPower,
+  kReady,
+  kStarted,
+  kConnected,
+  kAwake,
+  kButton,
+  kA,
+  kB,
+  kC,
+  kFlags
+};
 enum TextSlot : std::size_t { kId, kMode, kType, kPreset, kBasis, kHandedness, kTexts };
 
 struct NumberRow {
@@ -52,9 +74,12 @@ constexpr std::array kFlagRows{NameRow{"status.calibrated", kCalibrated},
                                NameRow{"state.buttons.a", kA},
                                NameRow{"state.buttons.b", kB},
                                NameRow{"state.buttons.c", kC}};
-constexpr std::array kTextRows{
-    NameRow{"device_id", kId},         NameRow{"state.control_mode", kMode},      NameRow{"config.type", kType},
-    NameRow{"config.preset", kPreset}, NameRow{"config.handedness", kHandedness}, NameRow{"config.basis.permutation", kBasis}};
+constexpr std::array kTextRows{NameRow{"device_id", kId},
+                               NameRow{"state.control_mode", kMode},
+                               NameRow{"config.type", kType},
+                               NameRow{"config.preset", kPreset},
+                               NameRow{"config.handedness", kHandedness},
+                               NameRow{"config.basis.permutation", kBasis}};
 
 template <typename Rows>
 auto rowOf(const Rows& rows, std::string_view path) {
@@ -70,15 +95,21 @@ bool leadsTo(const Rows& rows, std::string_view path) {
 }
 
 // A known value of a device, and a group of them.
-bool isValue(std::string_view path) { return rowOf(kNumberRows, path) || rowOf(kFlagRows, path) || rowOf(kTextRows, path); }
-bool isGroup(std::string_view path) { return leadsTo(kNumberRows, path) || leadsTo(kFlagRows, path) || leadsTo(kTextRows, path); }
+bool isValue(std::string_view path) {
+  return rowOf(kNumberRows, path) || rowOf(kFlagRows, path) || rowOf(kTextRows, path);
+}
+bool isGroup(std::string_view path) {
+  return leadsTo(kNumberRows, path) || leadsTo(kFlagRows, path) || leadsTo(kTextRows, path);
+}
 
 bool endsWith(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
 }
 
 // Of a mount or a transform: what the number at `path` is in the identity.
-double inIdentity(std::string_view path) { return endsWith(path, "rotation.w") || path.find(".scale.") != std::string_view::npos ? 1 : 0; }
+double inIdentity(std::string_view path) {
+  return endsWith(path, "rotation.w") || path.find(".scale.") != std::string_view::npos ? 1 : 0;
+}
 
 // All that is told of one device, until its object ends.
 struct Slots {
@@ -101,8 +132,12 @@ struct Slots {
     if (!told_numbers[first]) return std::nullopt;
     return Vec3(numbers[first], numbers[first + 1], numbers[first + 2]);
   }
-  std::optional<double> number(std::size_t slot) const { return told_numbers[slot] ? std::optional(numbers[slot]) : std::nullopt; }
-  std::optional<bool> flag(std::size_t slot) const { return told_flags[slot] ? std::optional(flags[slot]) : std::nullopt; }
+  std::optional<double> number(std::size_t slot) const {
+    return told_numbers[slot] ? std::optional(numbers[slot]) : std::nullopt;
+  }
+  std::optional<bool> flag(std::size_t slot) const {
+    return told_flags[slot] ? std::optional(flags[slot]) : std::nullopt;
+  }
   bool pressed(std::size_t slot) const { return flags[slot]; }
 };
 
@@ -114,7 +149,8 @@ void takeStatus(const Slots& slots, DeviceReport& device) {
   device.started = slots.flag(kStarted);
   device.connected = slots.flag(kConnected);
   device.awake = slots.flag(kAwake);
-  device.buttons = (slots.pressed(kButton) || slots.pressed(kA) ? 1u : 0u) | (slots.pressed(kB) ? 2u : 0u) | (slots.pressed(kC) ? 4u : 0u);
+  device.buttons = (slots.pressed(kButton) || slots.pressed(kA) ? 1u : 0u) | (slots.pressed(kB) ? 2u : 0u) |
+                   (slots.pressed(kC) ? 4u : 0u);
 }
 
 DeviceConfig configIn(const Slots& slots) {
@@ -225,7 +261,8 @@ class ServiceSink final : public JsonSink {
     in_device_ = false;
     if (!slots_.told_texts[kId]) return fail(ReadError::kNoId);
     if (message_.find(slots_.texts[kId].view()) != nullptr) return fail(ReadError::kTwice);
-    if (!slots_.whole(kPlace, 3) || !slots_.whole(kVelocity, 3) || !slots_.whole(kForce, 3) || !slots_.whole(kTurn, 4)) {
+    if (!slots_.whole(kPlace, 3) || !slots_.whole(kVelocity, 3) || !slots_.whole(kForce, 3) ||
+        !slots_.whole(kTurn, 4)) {
       return fail(ReadError::kMissingComponent);
     }
     DeviceReport& device = message_.devices[message_.count];

@@ -20,8 +20,9 @@ constexpr double kGentle = 0.2;  // up [N]
 constexpr double kFar = 0.03;    // [m]
 constexpr std::int64_t kPatience = 2000 * kMillisecond;
 constexpr std::int64_t kReadyIn = 10000 * kMillisecond;
-constexpr std::int64_t kPushesIn = 3000 * kMillisecond;  // after arming, the echo's test included; else this computer is too busy
-constexpr std::int64_t kPushes = 100 * kMillisecond;     // a push that is well established
+// after arming, the echo's test included; else this computer is too busy
+constexpr std::int64_t kPushesIn = 3000 * kMillisecond;
+constexpr std::int64_t kPushes = 100 * kMillisecond;  // a push that is well established
 constexpr std::int64_t kLookPeriod = 2 * kMillisecond;
 constexpr std::int64_t kBlind = 250 * kMillisecond;  // a second session that isn't told of the arm by then never is
 constexpr int kNobody = -1;                          // no descriptor wakes the wait
@@ -30,7 +31,9 @@ constexpr int kNobody = -1;                          // no descriptor wakes the 
 class Pusher final : public PortSink {
  public:
   Pusher(const ServicePlace& place, const std::string& arm, const ServiceVersion& version)
-      : id_(arm), port_(openHaplyPort(place, version.minor >= 4, 2)), session_(optionsOf(arm, version), usb::monotonicNs()) {}
+      : id_(arm),
+        port_(openHaplyPort(place, version.minor >= 4, 2)),
+        session_(optionsOf(arm, version), usb::monotonicNs()) {}
   ~Pusher() override {
     if (!port_) return;
     session_.disarm(0);
@@ -49,7 +52,9 @@ class Pusher final : public PortSink {
   void heard(std::string_view event) override { session_.heard(event, usb::monotonicNs()); }
 
   void push(const std::atomic<bool>& interrupted) {
-    turn(kReadyIn, [&] { return session_.phase() == SessionPhase::kReady || session_.phase() == SessionPhase::kRefused || interrupted; });
+    turn(kReadyIn, [&] {
+      return session_.phase() == SessionPhase::kReady || session_.phase() == SessionPhase::kRefused || interrupted;
+    });
     if (session_.phase() != SessionPhase::kReady) complain();
     session_.arm(0, usb::monotonicNs());
     session_.want(0, Vec3(0, 0, kGentle));
@@ -58,7 +63,8 @@ class Pusher final : public PortSink {
     if (session_.doubted()) complain();
     if (!pushes_ && !interrupted)
       throw std::runtime_error(
-          "The arm doesn't push within 3 s: this computer is too busy to tell. Close other programs, then measure again.");
+          "The arm doesn't push within 3 s: this computer is too busy to tell. Close other programs, then measure "
+          "again.");
   }
   // Gone without a word.
   void vanish() { port_.reset(); }
@@ -76,7 +82,8 @@ class Pusher final : public PortSink {
   }
   template <typename Done>
   void turn(std::int64_t time, Done done) {
-    for (const std::int64_t until = usb::monotonicNs() + time; port_->open() && usb::monotonicNs() < until && !done();) {
+    for (const std::int64_t until = usb::monotonicNs() + time;
+         port_->open() && usb::monotonicNs() < until && !done();) {
       const std::int64_t now = usb::monotonicNs();
       for (auto text = session_.next(now); !text.empty(); text = session_.next(now)) port_->send(text);
       port_->wait(now + kSendPeriod, kNobody, *this);
@@ -93,7 +100,9 @@ class Pusher final : public PortSink {
 // The session that looks.
 class Watcher final : public PortSink {
  public:
-  Watcher(const ServicePlace& place, const std::string& arm) : port_(openHaplyPort(place, false, 2)) { device_.id = *Label::of(arm); }
+  Watcher(const ServicePlace& place, const std::string& arm) : port_(openHaplyPort(place, false, 2)) {
+    device_.id = *Label::of(arm);
+  }
   void received(std::string_view text) override {
     ServiceMessage& message = *message_;
     if (readService(text, message) != ReadError::kNone) return;
@@ -134,8 +143,8 @@ class Watcher final : public PortSink {
 
 }  // namespace
 
-SilenceFinding measureSilence(const ServicePlace& place, const std::string& arm, const ServiceVersion& version, Ending ending,
-                              const std::atomic<bool>& interrupted) {
+SilenceFinding measureSilence(const ServicePlace& place, const std::string& arm, const ServiceVersion& version,
+                              Ending ending, const std::atomic<bool>& interrupted) {
   if (!Label::of(arm)) throw std::runtime_error("That isn't the id of an Inverse3, as 049D.");
   LastZero::install();
   Pusher pusher(place, arm, version);
@@ -153,10 +162,12 @@ SilenceFinding measureSilence(const ServicePlace& place, const std::string& arm,
   }
   finding.seconds = 1e-9 * static_cast<double>(usb::monotonicNs() - begin);
   finding.moved = watcher.moved();
-  if (ending == Ending::kClose) Pusher(place, arm, version).push(interrupted);  // takes it back, and lets it go with zeros
+  // takes it back, and lets it go with zeros
+  if (ending == Ending::kClose) Pusher(place, arm, version).push(interrupted);
   if (!watcher.sees() && !interrupted)
     throw std::runtime_error(
-        "The service tells a second session nothing of an arm that is in use, so nobody can see when it lets go. Leave idle_after unset: "
+        "The service tells a second session nothing of an arm that is in use, so nobody can see when it lets go. Leave "
+        "idle_after unset: "
         "sessions keep to 2 N.");
   return finding;
 }

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kIdentifyPeriod = 50'000'000;     // [ns]
 constexpr std::int64_t kCalibrationPeriod = 20'000'000;  // [ns]
-constexpr int kBeganAnew = 50;                           // refused frames in a row after which the device is asked again who it is
+constexpr int kBeganAnew = 50;  // refused frames in a row after which the device is asked again who it is
 
 }  // namespace
 
@@ -36,7 +36,8 @@ std::size_t DeviceLink::calibrationSize() {
 // Forgotten here until the device says what it keeps.
 bool DeviceLink::writeCalibration(const std::string& name, double value) {
   const std::lock_guard lock(slow_);
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const auto& e) { return e.second.name == name; });
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const auto& e) { return e.second.name == name; });
   if (found == entries_.end()) return false;
   to_write_.push_back({found->first, 0, name, value});
   entries_.erase(found);
@@ -122,7 +123,8 @@ bool DeviceLink::takeCalibration(const Frame& frame) {
 
 void DeviceLink::updateState() {
   DeviceState state = DeviceState::kConnecting;
-  if (attached_ && has_capabilities_) state = told_ == DeviceState::kReady && !has_state_ ? DeviceState::kHoming : told_;
+  if (attached_ && has_capabilities_)
+    state = told_ == DeviceState::kReady && !has_state_ ? DeviceState::kHoming : told_;
   state_.store(state, std::memory_order_release);
 }
 

@@ -1,7 +1,8 @@
-// device_link: one device that speaks the protocol, over the times that it is plugged in. Between the USB thread, which moves frames, and the
-// servo thread, which asks for the latest and commands: neither waits for the other.
+// device_link: one device that speaks the protocol, over the times that it is plugged in. Between the USB thread, which
+// moves frames, and the servo thread, which asks for the latest and commands: neither waits for the other.
 //
-//   kConnecting -- identity, capabilities, status "ready", a state --> kReady;   unplugged: kConnecting again;   status "faulted": kFaulted
+//   kConnecting -- identity, capabilities, status "ready", a state --> kReady;   unplugged:
+//   kConnecting again;   status "faulted": kFaulted
 #pragma once
 #include <array>
 #include <atomic>
@@ -66,7 +67,9 @@ class DeviceLink {
   // True if a stop is to be sent, before anything else.
   virtual bool takeStop() { return false; }
 
-  double sinceEpoch(std::int64_t ns) const { return 1e-9 * static_cast<double>(ns - epoch_ns_.load(std::memory_order_relaxed)); }
+  double sinceEpoch(std::int64_t ns) const {
+    return 1e-9 * static_cast<double>(ns - epoch_ns_.load(std::memory_order_relaxed));
+  }
   void answered(std::uint32_t sequence);
 
  private:
@@ -78,8 +81,8 @@ class DeviceLink {
   const Identity identity_;
   std::atomic<DeviceState> state_{DeviceState::kConnecting};
   std::atomic<std::int64_t> epoch_ns_{0};
-  std::atomic<std::int64_t> accepted_{0}, commands_{0}, bad_{0}, duplicates_{0}, late_{0}, lost_{0}, connects_{0}, unplugs_{0}, answers_{0},
-      round_trip_ns_{0};
+  std::atomic<std::int64_t> accepted_{0}, commands_{0}, bad_{0}, duplicates_{0}, late_{0}, lost_{0}, connects_{0},
+      unplugs_{0}, answers_{0}, round_trip_ns_{0};
 
   // USB thread only.
   bool attached_ = false, has_capabilities_ = false, has_state_ = false;

@@ -1,11 +1,13 @@
 // frame_order: which of the frames that arrive is newer than all before, and what of the sender's clock on ours.
 //
-//   step = sequence - last (as a signed 32-bit number): > 0 newer, step - 1 are missing;  0 or come before: a duplicate;  < 0 late
-//   missing and then late isn't lost: lost = gaps - late ones that filled them (of the last 64 frames)
-//   offset = min over the frames of (arrival - sender's time), growing by 50 ppm of the time passed;   sent = sender's time + offset
+//   step = sequence - last (as a signed 32-bit number): > 0 newer, step - 1 are missing;  0 or come before:
+//   a duplicate;  < 0 late missing and then late isn't lost: lost = gaps - late ones that filled them (of
+//   the last 64 frames) offset = min over the frames of (arrival - sender's time), growing by 50 ppm of the
+//   time passed;   sent = sender's time + offset
 //
-// The least offset belongs to the frame that travelled fastest: so the time given to a frame that was held up on its way is the time at
-// which it was measured, and the gate sees how old it is. The growth lets a slower clock of the sender be followed.
+// The least offset belongs to the frame that travelled fastest: so the time given to a frame that was
+// held up on its way is the time at which it was measured, and the gate sees how old it is. The growth
+// lets a slower clock of the sender be followed.
 #pragma once
 #include <cstdint>
 

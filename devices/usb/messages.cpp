@@ -12,7 +12,14 @@ constexpr double kTorqueStep = 1e-4, kTorque = 6.5;   // [N m]
 constexpr double kMassStep = 1e-4, kMass = 6.5;       // [kg]
 constexpr double kDampingStep = 1e-3, kDamping = 65;  // [N s/m]
 
-enum ArmBit : std::uint8_t { kArmValid = 1, kArmLimp = 2, kArmVelocity = 4, kArmGimbal = 8, kArmSwitches = 16, kArmBits = 31 };
+enum ArmBit : std::uint8_t {
+  kArmValid = 1,
+  kArmLimp = 2,
+  kArmVelocity = 4,
+  kArmGimbal = 8,
+  kArmSwitches = 16,
+  kArmBits = 31
+};
 enum DisplayBit : std::uint8_t { kDisplayValid = 1, kDisplayParked = 2, kDisplayPlace = 4, kDisplayBits = 7 };
 
 Frame frameOf(FrameType type) {
@@ -129,8 +136,8 @@ std::optional<ArmCommand> armCommandIn(const Frame& frame) {
 
 Frame toFrame(const ArmState& m) {
   Frame frame = frameOf(FrameType::kArmState);
-  const int flags = (m.valid ? kArmValid : 0) | (m.limp ? kArmLimp : 0) | (m.v_DF ? kArmVelocity : 0) | (m.q_DF ? kArmGimbal : 0) |
-                    (m.switches ? kArmSwitches : 0);
+  const int flags = (m.valid ? kArmValid : 0) | (m.limp ? kArmLimp : 0) | (m.v_DF ? kArmVelocity : 0) |
+                    (m.q_DF ? kArmGimbal : 0) | (m.switches ? kArmSwitches : 0);
   PayloadWriter out(frame.payload);
   out.put(static_cast<std::uint8_t>(flags)).put(std::uint8_t{0});
   out.putVector<3>(m.p_DF, kNano, kReach).putVector<3>(m.v_DF.value_or(Vec3::Zero()), kMicro, kSpeed);
@@ -211,7 +218,11 @@ std::optional<DisplayState> displayStateIn(const Frame& frame) {
 
 Frame toFrame(const Status& m) {
   Frame frame = frameOf(FrameType::kStatus);
-  PayloadWriter(frame.payload).put(static_cast<std::uint8_t>(m.state)).put(m.faults).put(m.bad_frames).put(m.missed_deadlines);
+  PayloadWriter(frame.payload)
+      .put(static_cast<std::uint8_t>(m.state))
+      .put(m.faults)
+      .put(m.bad_frames)
+      .put(m.missed_deadlines);
   return frame;
 }
 
@@ -220,7 +231,8 @@ std::optional<Status> statusIn(const Frame& frame) {
   PayloadReader in(frame.payload);
   Status m;
   const auto state = in.take<std::uint8_t>();
-  in.require(state >= static_cast<std::uint8_t>(DeviceState::kHoming) && state <= static_cast<std::uint8_t>(DeviceState::kFaulted));
+  in.require(state >= static_cast<std::uint8_t>(DeviceState::kHoming) &&
+             state <= static_cast<std::uint8_t>(DeviceState::kFaulted));
   m.state = static_cast<DeviceState>(state);
   m.faults = in.take<std::uint32_t>();
   in.require(m.faults < 16);
@@ -294,7 +306,8 @@ Frame toFrame(const CalibrationEntry& m, FrameType type) {
 
 std::optional<CalibrationEntry> calibrationIn(const Frame& frame) {
   const bool reads = frame.type == FrameType::kReadCalibration;
-  if (!reads && frame.type != FrameType::kWriteCalibration && frame.type != FrameType::kCalibration) return std::nullopt;
+  if (!reads && frame.type != FrameType::kWriteCalibration && frame.type != FrameType::kCalibration)
+    return std::nullopt;
   PayloadReader in(frame.payload);
   CalibrationEntry m;
   m.index = in.take<std::uint8_t>();

@@ -1,7 +1,9 @@
-// messages: what the payload of a frame says, in SI units; each encode / decode pair follows docs/usb-protocol.md byte by byte.
+// messages: what the payload of a frame says, in SI units; each encode / decode pair
+// follows docs/usb-protocol.md byte by byte.
 //
-// On the wire: lengths in nm, forces in uN, speeds in um/s, times in 0.1 ms, as integers, so that nothing that isn't a number can arrive.
-// decode: absent unless the type is right, every value is in its range, and every byte that the message doesn't use is zero.
+// On the wire: lengths in nm, forces in uN, speeds in um/s, times in 0.1 ms, as integers, so that nothing that
+// isn't a number can arrive. decode: absent unless the type is right, every value is in its range, and every
+// byte that the message doesn't use is zero.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -31,7 +33,7 @@ struct Identity {
   std::string serial;          // 1 .. 12
   Linkage linkage = Linkage::kNotTold;
   std::optional<double> tip_mass = {};  // of an arm: the least felt at its tip [kg], 0.0001 .. 6.5
-  double tip_damping = 0;               // of an arm: the least viscous friction at its tip [N s/m], 0 .. 65; 0: not told
+  double tip_damping = 0;  // of an arm: the least viscous friction at its tip [N s/m], 0 .. 65; 0: not told
   bool operator==(const Identity&) const = default;
 };
 

@@ -1,4 +1,5 @@
-// payload: writing and reading the fields of a payload one after the other. Reading checks as it goes and remembers whether all was well.
+// payload: writing and reading the fields of a payload one after the other. Reading checks as it
+// goes and remembers whether all was well.
 #pragma once
 #include <cmath>
 #include <cstring>
@@ -33,7 +34,8 @@ class PayloadWriter {
     return *this;
   }
   PayloadWriter& putText(std::string_view text, std::size_t size) {
-    for (std::size_t i = 0; i < size; ++i) bytes_[at_ + i] = i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
+    for (std::size_t i = 0; i < size; ++i)
+      bytes_[at_ + i] = i < text.size() ? static_cast<std::uint8_t>(text[i]) : std::uint8_t{0};
     at_ += size;
     return *this;
   }

@@ -1,7 +1,8 @@
 // usb_arm: an arm that speaks the protocol of docs/usb-protocol.md.
 //
-// Force needs three yeses: the gate's (the caller), this arm's (armed since it was plugged in and since the last stop), and the device's (an
-// arming count that it hasn't refused). Every command dies in the device after its deadline, so a computer that stops is zero force.
+// Force needs three yeses: the gate's (the caller), this arm's (armed since it was plugged in and since the last
+// stop), and the device's (an arming count that it hasn't refused). Every command dies in the device after its
+// deadline, so a computer that stops is zero force.
 #pragma once
 #include "pincer/devices/arm/arm.h"
 #include "pincer/devices/usb/stream_link.h"
@@ -17,7 +18,8 @@ class UsbArm final : public Arm, public StreamLink<ArmWire> {
   std::string identity() const override { return nameOfDevice(); }
   const ArmCapabilities& capabilities() const override { return toldCapabilities(); }
   DeviceState state() const override { return linkState(); }
-  // From the servo thread, as commandForce and arm. Invalid while unplugged, and once the device went limp on its own after arm().
+  // From the servo thread, as commandForce and arm. Invalid while unplugged, and once the
+  // device went limp on its own after arm().
   ArmSample sample() override;
   void commandForce(const Vec3& f_D) override;
   void arm() override;

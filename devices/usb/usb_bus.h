@@ -1,7 +1,8 @@
 // usb_bus: packets to and from every pincer device on the machine's USB ports. Implemented by usb_bus_libusb.cpp.
 //
-// One thread does everything: it waits for transfers, plugs and wake(); transfers are asynchronous, and what libusb calls back only marks
-// them as done. A port that stalls is cleared and goes on; one whose transfers fail eight times in a row, or that is unplugged, is closed.
+// One thread does everything: it waits for transfers, plugs and wake(); transfers are asynchronous, and what libusb
+// calls back only marks them as done. A port that stalls is cleared and goes on; one whose transfers fail eight times
+// in a row, or that is unplugged, is closed.
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -21,8 +21,8 @@
 namespace pincer::devices::usb {
 namespace {
 
-// Transfers that wait for the device at any time: the kernel fills them while this program gets no processor, so that it loses no frame in
-// a pause of 64 ms of an arm that states its place 1,000 times a second.
+// Transfers that wait for the device at any time: the kernel fills them while this program gets no processor, so that
+// it loses no frame in a pause of 64 ms of an arm that states its place 1,000 times a second.
 constexpr int kInFlight = 64;
 constexpr int kFailuresInARow = 8;  // after which a port is given up
 constexpr int kWaitMs = 20;         // between looks at what is due, with nothing going on
@@ -59,7 +59,8 @@ std::string placeOf(libusb_device* device) { return "USB device " + portName(dev
 std::string openProblem(libusb_device* device, int error) {
   if (error == LIBUSB_ERROR_ACCESS) {
     return placeOf(device) +
-           ": no permission to open it. Install the udev rule (docs/devices/setup.md) and join its group: sudo usermod -aG plugdev $USER; "
+           ": no permission to open it. Install the udev rule (docs/devices/setup.md) and join its group: sudo usermod "
+           "-aG plugdev $USER; "
            "then "
            "log in "
            "again and replug the device. No need to be root.";
@@ -111,11 +112,13 @@ class LibusbBus final : public UsbBus {
 
   void wake() noexcept override {
     const std::uint64_t one = 1;
-    [[maybe_unused]] const auto written = ::write(wake_fd_, &one, sizeof one);  // it can only be full, and then it wakes anyway
+    // it can only be full, and then it wakes anyway
+    [[maybe_unused]] const auto written = ::write(wake_fd_, &one, sizeof one);
   }
 
  private:
-  static constexpr std::size_t kMostPlugs = 256, kMostFds = 256;  // between two looks; of libusb. A bus has at most 127 devices
+  // between two looks; of libusb. A bus has at most 127 devices
+  static constexpr std::size_t kMostPlugs = 256, kMostFds = 256;
 
   void run() noexcept {  // where memory ends, it is as if all devices were unplugged: motors go limp by themselves
     for (const auto part : {&LibusbBus::serveAll, &LibusbBus::closeAll}) {
@@ -127,7 +130,8 @@ class LibusbBus final : public UsbBus {
   }
 
   void serveAll() {
-    // Just below the servo's priority, where the system permits it: a command that waits for this thread waits for nothing else.
+    // Just below the servo's priority, where the system permits it: a command that
+    // waits for this thread waits for nothing else.
     hurryThisThread(kUsbPriority);
     const bool told = watchPlugs();
     if (!told) lookForDevices();
@@ -147,14 +151,16 @@ class LibusbBus final : public UsbBus {
   // True if the system tells of plugs.
   bool watchPlugs() {
     if (libusb_has_capability(LIBUSB_CAP_HAS_HOTPLUG) == 0) return false;
-    const auto events = static_cast<libusb_hotplug_event>(LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT);
-    return libusb_hotplug_register_callback(context_, events, LIBUSB_HOTPLUG_ENUMERATE, kVendorId, kProductId, LIBUSB_HOTPLUG_MATCH_ANY,
-                                            &LibusbBus::plugged, this, nullptr) == 0;
+    const auto events =
+        static_cast<libusb_hotplug_event>(LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED | LIBUSB_HOTPLUG_EVENT_DEVICE_LEFT);
+    return libusb_hotplug_register_callback(context_, events, LIBUSB_HOTPLUG_ENUMERATE, kVendorId, kProductId,
+                                            LIBUSB_HOTPLUG_MATCH_ANY, &LibusbBus::plugged, this, nullptr) == 0;
   }
   static int LIBUSB_CALL plugged(libusb_context*, libusb_device* device, libusb_hotplug_event event, void* self) {
     auto& bus = *static_cast<LibusbBus*>(self);
     auto& some = event == LIBUSB_HOTPLUG_EVENT_DEVICE_ARRIVED ? bus.arrived_ : bus.left_;
-    if (some.size() < kMostPlugs) some.push_back(libusb_ref_device(device));  // nothing may be thrown through libusb, which is C
+    // nothing may be thrown through libusb, which is C
+    if (some.size() < kMostPlugs) some.push_back(libusb_ref_device(device));
     return 0;
   }
   // Where the system doesn't: once a second.
@@ -166,7 +172,8 @@ class LibusbBus final : public UsbBus {
     const auto count = libusb_get_device_list(context_, &list);
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       libusb_device_descriptor d;
-      if (libusb_get_device_descriptor(list[i], &d) != 0 || d.idVendor != kVendorId || d.idProduct != kProductId || portOf(list[i]))
+      if (libusb_get_device_descriptor(list[i], &d) != 0 || d.idVendor != kVendorId || d.idProduct != kProductId ||
+          portOf(list[i]))
         continue;
       arrived_.push_back(libusb_ref_device(list[i]));
     }
@@ -177,7 +184,8 @@ class LibusbBus final : public UsbBus {
     fds_.clear();
     fds_.push_back({wake_fd_, POLLIN, 0});
     if (const libusb_pollfd** list = libusb_get_pollfds(context_)) {
-      for (const libusb_pollfd** fd = list; *fd != nullptr && fds_.size() < kMostFds; ++fd) fds_.push_back({(*fd)->fd, (*fd)->events, 0});
+      for (const libusb_pollfd** fd = list; *fd != nullptr && fds_.size() < kMostFds; ++fd)
+        fds_.push_back({(*fd)->fd, (*fd)->events, 0});
       libusb_free_pollfds(list);
     }
     ::poll(fds_.data(), fds_.size(), kWaitMs);
@@ -207,8 +215,10 @@ class LibusbBus final : public UsbBus {
   }
 
   void open(libusb_device* device) {
-    const auto free = std::find_if(states_.begin(), states_.end(), [](const PortState& p) { return p.device == nullptr; });
-    if (free == states_.end()) return ports_.problem("More than 16 USB devices are plugged in; unplug those that aren't needed.");
+    const auto free =
+        std::find_if(states_.begin(), states_.end(), [](const PortState& p) { return p.device == nullptr; });
+    if (free == states_.end())
+      return ports_.problem("More than 16 USB devices are plugged in; unplug those that aren't needed.");
     PortState& p = *free;
     if (portOf(device) != nullptr) return;
     libusb_device_handle* handle = nullptr;
@@ -217,7 +227,8 @@ class LibusbBus final : public UsbBus {
     p.endpoints = endpointsOf(device);
     if (p.endpoints.in == 0 || p.endpoints.out == 0) {
       libusb_close(handle);
-      return ports_.problem(placeOf(device) + ": it lacks a 64-byte endpoint in each direction (docs/usb-protocol.md).");
+      return ports_.problem(placeOf(device) +
+                            ": it lacks a 64-byte endpoint in each direction (docs/usb-protocol.md).");
     }
     error = libusb_claim_interface(handle, 0);
     if (error != 0) {
@@ -237,15 +248,16 @@ class LibusbBus final : public UsbBus {
       t.port = &p;
       t.transfer = libusb_alloc_transfer(0);
       if (t.transfer == nullptr) return void(p.closing = true);
-      libusb_fill_interrupt_transfer(t.transfer, p.handle, p.endpoints.in, t.buffer.data(), static_cast<int>(t.buffer.size()), markDone, &t,
-                                     0);
+      libusb_fill_interrupt_transfer(t.transfer, p.handle, p.endpoints.in, t.buffer.data(),
+                                     static_cast<int>(t.buffer.size()), markDone, &t, 0);
       t.transfer->type = p.endpoints.in_type;
       submit(p, t);
     }
     p.out.port = &p;
     p.out.transfer = libusb_alloc_transfer(0);
     if (p.out.transfer == nullptr) return void(p.closing = true);
-    libusb_fill_interrupt_transfer(p.out.transfer, p.handle, p.endpoints.out, p.packet.data(), kFrameSize, markDone, &p.out, 0);
+    libusb_fill_interrupt_transfer(p.out.transfer, p.handle, p.endpoints.out, p.packet.data(), kFrameSize, markDone,
+                                   &p.out, 0);
     p.out.transfer->type = p.endpoints.out_type;
   }
 
@@ -275,13 +287,15 @@ class LibusbBus final : public UsbBus {
       t.flying = false;
       --p.flying;
       if (!finished(p, *t.transfer, &t == &p.out ? out_failed : in_failed) || &t == &p.out || p.told_closed) continue;
-      ports_.received(port, std::span(t.buffer).first(static_cast<std::size_t>(std::max(0, t.transfer->actual_length))), clock_());
+      ports_.received(port, std::span(t.buffer).first(static_cast<std::size_t>(std::max(0, t.transfer->actual_length))),
+                      clock_());
     }
     p.done_count = 0;
   }
 
-  // True if the transfer brought its packet. A stalled endpoint is cleared; whatever fails too often in a row closes the port. Those that
-  // wait behind one that stalls come back with it: that is one failure; `failed`: it has been seen.
+  // True if the transfer brought its packet. A stalled endpoint is cleared; whatever fails too
+  // often in a row closes the port. Those that wait behind one that stalls come back with it: that
+  // is one failure; `failed`: it has been seen.
   bool finished(PortState& p, libusb_transfer& transfer, bool& failed) {
     switch (transfer.status) {
       case LIBUSB_TRANSFER_COMPLETED:
@@ -292,7 +306,8 @@ class LibusbBus final : public UsbBus {
         return false;
       default:
         if (std::exchange(failed, true)) return false;
-        if (transfer.status == LIBUSB_TRANSFER_STALL && libusb_clear_halt(p.handle, transfer.endpoint) == LIBUSB_ERROR_NO_DEVICE)
+        if (transfer.status == LIBUSB_TRANSFER_STALL &&
+            libusb_clear_halt(p.handle, transfer.endpoint) == LIBUSB_ERROR_NO_DEVICE)
           p.closing = true;
         if (++p.failures >= kFailuresInARow) p.closing = true;
         return false;
@@ -363,6 +378,8 @@ class LibusbBus final : public UsbBus {
 
 }  // namespace
 
-std::unique_ptr<UsbBus> openUsbBus(UsbPorts& ports, Clock clock) { return std::make_unique<LibusbBus>(ports, std::move(clock)); }
+std::unique_ptr<UsbBus> openUsbBus(UsbPorts& ports, Clock clock) {
+  return std::make_unique<LibusbBus>(ports, std::move(clock));
+}
 
 }  // namespace pincer::devices::usb

@@ -1,5 +1,5 @@
-// usb_display: a contact location display that speaks the protocol of docs/usb-protocol.md. A command dies in the device after
-// `kPlaceDeadline`; the tactor then parks.
+// usb_display: a contact location display that speaks the protocol of docs/usb-protocol.md. A command dies in the
+// device after `kPlaceDeadline`; the tactor then parks.
 #pragma once
 #include "pincer/devices/cld/tactile_display.h"
 #include "pincer/devices/usb/stream_link.h"

@@ -46,7 +46,8 @@ bool UsbHost::waitFor(std::size_t arms, std::size_t displays, double timeout) {
   std::unique_lock lock(slow_);
   while (!readyNow(arms, displays)) {
     if (searched_ && open_ports_ == 0) return false;
-    if (changed_.wait_for(lock, std::chrono::milliseconds(5)), std::chrono::steady_clock::now() > until) return readyNow(arms, displays);
+    if (changed_.wait_for(lock, std::chrono::milliseconds(5)), std::chrono::steady_clock::now() > until)
+      return readyNow(arms, displays);
   }
   return true;
 }
@@ -78,7 +79,8 @@ void UsbHost::setEpoch(std::int64_t ns) {
 }
 
 void UsbHost::opened(int port, std::int64_t now) {
-  ports_[static_cast<std::size_t>(port)] = {.open = true, .link = nullptr, .next_identify = now, .sequence = 0, .asked = 0};
+  ports_[static_cast<std::size_t>(port)] = {
+      .open = true, .link = nullptr, .next_identify = now, .sequence = 0, .asked = 0};
   const std::lock_guard lock(slow_);
   ++open_ports_;
 }
@@ -127,8 +129,9 @@ void UsbHost::meet(Port& port, const Frame& frame, std::int64_t now) {
 DeviceLink* UsbHost::linkOf(const Identity& identity) {
   UsbThread& usb = *this;
   const std::lock_guard lock(slow_);
-  DeviceLink& link = identity.kind == DeviceKind::kArm ? static_cast<DeviceLink&>(foundOrMade(arms_, identity, usb))
-                                                       : static_cast<DeviceLink&>(foundOrMade(displays_, identity, usb));
+  DeviceLink& link = identity.kind == DeviceKind::kArm
+                         ? static_cast<DeviceLink&>(foundOrMade(arms_, identity, usb))
+                         : static_cast<DeviceLink&>(foundOrMade(displays_, identity, usb));
   link.setEpoch(epoch_ns_);
   return link.deviceIdentity() == identity ? &link : nullptr;
 }
@@ -146,7 +149,9 @@ bool UsbHost::toSend(int port, FrameBytes& packet, std::int64_t now) {
     frame.sequence = ++p.sequence;
     frame.time_us = static_cast<std::uint64_t>(now / 1000);
     if (++p.asked == kAsksBeforeAProblem) {
-      problem("A USB device doesn't say who it is. Unplug it and plug it in again; check its firmware (docs/usb-protocol.md).");
+      problem(
+          "A USB device doesn't say who it is. Unplug it and plug it in again; check its firmware "
+          "(docs/usb-protocol.md).");
     }
   }
   packet = encode(frame);

@@ -1,5 +1,5 @@
-// usb_host: the arms and displays on this computer's USB ports, found by asking every pincer device who it is, and found again after they were
-// unplugged. A device is the same one if kind and serial number are.
+// usb_host: the arms and displays on this computer's USB ports, found by asking every pincer device who it is, and
+// found again after they were unplugged. A device is the same one if kind and serial number are.
 #pragma once
 #include <atomic>
 #include <condition_variable>
@@ -24,8 +24,8 @@ class UsbHost final : private UsbPorts, private UsbThread {
   UsbHost(const UsbHost&) = delete;
   UsbHost& operator=(const UsbHost&) = delete;
 
-  // Waits until at least so many are ready, at most `timeout` [s] of the wall clock; whether they are. With nothing plugged in it returns as
-  // soon as the ports have been looked at.
+  // Waits until at least so many are ready, at most `timeout` [s] of the wall clock; whether they are. With nothing
+  // plugged in it returns as soon as the ports have been looked at.
   bool waitFor(std::size_t arms, std::size_t displays, double timeout);
   // Devices that were ever identified, by serial number; they live as long as the host. Never in a tick.
   std::vector<UsbArm*> arms();

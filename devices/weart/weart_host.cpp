@@ -49,12 +49,14 @@ int openSocket(const WeartOptions& options) {
   addrinfo* places = nullptr;
   int fd = -1;
   if (::getaddrinfo(options.host.c_str(), fmt::format("{}", options.port).c_str(), &wanted, &places) == 0) {
-    for (const addrinfo* place = places; place != nullptr && fd < 0; place = place->ai_next) fd = connected(*place, options.timeout);
+    for (const addrinfo* place = places; place != nullptr && fd < 0; place = place->ai_next)
+      fd = connected(*place, options.timeout);
     ::freeaddrinfo(places);
   }
   if (fd >= 0) return fd;
   throw std::runtime_error(
-      fmt::format("Nobody answers as WEART's Middleware at {}:{}. Start it (or WEART-App) there, permit its port in the firewall; another "
+      fmt::format("Nobody answers as WEART's Middleware at {}:{}. Start it (or WEART-App) there, permit its port in "
+                  "the firewall; another "
                   "place: --pressure "
                   "HOST:PORT.",
                   options.host, options.port));
@@ -95,9 +97,10 @@ WeartHost::WeartHost(const WeartOptions& options) : options_(options) {
   while (there && !running_ && usb::monotonicNs() < until) there = hear(kPeriod);
   if (!running_) {
     ::close(socket_);
-    throw std::runtime_error(fmt::format(
-        "The program at {}:{} doesn't say that it runs, as WEART's Middleware does. Is the TouchDIVER connected and calibrated there?",
-        options_.host, options_.port));
+    throw std::runtime_error(
+        fmt::format("The program at {}:{} doesn't say that it runs, as WEART's Middleware does. Is the TouchDIVER "
+                    "connected and calibrated there?",
+                    options_.host, options_.port));
   }
   begun_ = true;
   thread_ = std::thread([this] { run(); });
@@ -128,7 +131,8 @@ void WeartHost::run() {
       doubt("The connection to WEART's Middleware is lost, and with it the pressure. Start the session again.");
       return;
     }
-    if (!running_) doubt("WEART's Middleware doesn't run any more, or passes nothing on. Look at it, then start the session again.");
+    if (!running_)
+      doubt("WEART's Middleware doesn't run any more, or passes nothing on. Look at it, then start the session again.");
   }
   pressAll(0);
   say(kStop);
@@ -143,7 +147,8 @@ bool WeartHost::pressAll(std::int64_t now) {
     if (level > 0) {
       well &= say(writeForce(buffer, level, options_.hand, display->thimble));
     } else if (display->presses || now == 0) {
-      well &= say(writeForce(buffer, 0, options_.hand, display->thimble)) && say(writeStopForce(buffer, options_.hand, display->thimble));
+      well &= say(writeForce(buffer, 0, options_.hand, display->thimble)) &&
+              say(writeStopForce(buffer, options_.hand, display->thimble));
     }
     display->presses = level > 0;
   }
@@ -165,7 +170,8 @@ bool WeartHost::hear(int milliseconds) {
     if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) return false;
     if (count < 0) continue;
     cutter_.add({bytes.data(), static_cast<std::size_t>(count)}, [&](std::string_view message) {
-      if (const auto status = readStatus(message)) running_ = (running_ || !begun_) && status->running && status->actuates;
+      if (const auto status = readStatus(message))
+        running_ = (running_ || !begun_) && status->running && status->actuates;
     });
   }
   return true;

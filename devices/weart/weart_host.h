@@ -1,9 +1,11 @@
 // weart_host: WEART's TouchDIVER behind its maker's Middleware: up to three thimbles, each a display of pressure.
 //
-//   level = min(1, f_n / full_force)      100 times a second, newest only; 0 and stopForce on every way out, on a doubt, and 100 ms after the last press()
+//   level = min(1, f_n / full_force)      100 times a second, newest only; 0 and stopForce on every way out, on a
+//                                         doubt, and 100 ms after the last press()
 //
-// One thread and one TCP connection of its own; the tick only writes a number. Doubts: the connection is lost, the Middleware says that it isn't
-// running. Newtons per level and delay aren't documented by the maker. Temperature and texture are never commanded.
+// One thread and one TCP connection of its own; the tick only writes a number. Doubts: the connection is lost,
+// the Middleware says that it isn't running. Newtons per level and delay aren't documented by the maker.
+// Temperature and texture are never commanded.
 #pragma once
 #include <array>
 #include <atomic>

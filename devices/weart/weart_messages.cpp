@@ -39,8 +39,8 @@ class StatusSink final : public haply::JsonSink {
 
 std::string_view writeForce(TextBuffer& buffer, double level, HandSide hand, Thimble thimble) {
   const double sound = level > 0 ? std::min(level, 1.0) : 0;
-  const auto end =
-      fmt::format_to_n(buffer.data(), buffer.size(), "force:{:.6f}:0.000000:0.000000:{}:{}~", sound, nameOf(hand), nameOf(thimble));
+  const auto end = fmt::format_to_n(buffer.data(), buffer.size(), "force:{:.6f}:0.000000:0.000000:{}:{}~", sound,
+                                    nameOf(hand), nameOf(thimble));
   return {buffer.data(), end.size};
 }
 

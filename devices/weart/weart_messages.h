@@ -1,10 +1,14 @@
-// weart_messages: the texts between a client and WEART's Middleware (or WEART-App) over TCP, as its SDK for C++ 2.0.1 has them:
+// weart_messages: the texts between a client and WEART's Middleware (or WEART-App)
+// over TCP, as its SDK for C++ 2.0.1 has them:
 //
-//   out   StartFromClient:SdkLLCPP:2.0.0:TrackType1~   force:0.350000:0.000000:0.000000:RIGHT:INDEX~   stopForce:RIGHT:INDEX~   StopFromClient~
-//   in    {"type":"MW_STATUS","ts":1,"data":{"status":"RUNNING","actuationsEnabled":true,"connectedDevices":[..]}}~   Tracking:..~   and others
+//   out   StartFromClient:SdkLLCPP:2.0.0:TrackType1~   force:0.350000:0.000000:0.000000:RIGHT:INDEX~
+//                                                      stopForce:RIGHT:INDEX~   StopFromClient~
+//   in    {"type":"MW_STATUS","ts":1,"data":{"status":"RUNNING","actuationsEnabled":true,"connectedDevices":[..]}}~
+//         Tracking:..~   and others
 //
-// A message ends with '~'. The first of a force's three numbers is the level, 0 to 1, at which the plate presses: no newtons. Commands aren't answered.
-// Nobody here has met the program or the device: of what comes in only MW_STATUS is understood, all else is left alone.
+// A message ends with '~'. The first of a force's three numbers is the level, 0 to 1, at which the plate presses:
+// no newtons. Commands aren't answered. Nobody here has met the program or the device: of what comes in only
+// MW_STATUS is understood, all else is left alone.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -34,7 +38,8 @@ struct MiddlewareStatus {
 // Absent: the message isn't a status.
 std::optional<MiddlewareStatus> readStatus(std::string_view message);
 
-// Cuts what arrives into messages, however it is split or glued. One that is longer than kMostMessage is left out, and counted.
+// Cuts what arrives into messages, however it is split or glued. One that is longer
+// than kMostMessage is left out, and counted.
 class MessageCutter {
  public:
   static constexpr std::size_t kMostMessage = 16384;

@@ -37,9 +37,10 @@ struct Modifiers {
 
 struct InputEvent {
   InputKind kind = InputKind::kMove;
-  int code = 0;         // a key or a button
-  bool down = false;    // of a key or a button: pressed (a key that repeats is pressed again), else released
-  double x = 0, y = 0;  // kMove and kButton: where, from the upper left corner, y down [pixels]; kWheel: notches, y away from the person
+  int code = 0;       // a key or a button
+  bool down = false;  // of a key or a button: pressed (a key that repeats is pressed again), else released
+  // kMove and kButton: where, from the upper left corner, y down [pixels]; kWheel: notches, y away from the person
+  double x = 0, y = 0;
   Modifiers modifiers = {};
 };
 

@@ -26,9 +26,10 @@ ArmCapabilities mouseCapabilities() {
 MouseArm::MouseArm(const MouseArmSettings& settings)
     : settings_(settings), capabilities_(mouseCapabilities()), p_D_(settings.start_D), p_hand_D_(settings.start_D) {
   requireSetting("mouse arm", settings.mass >= 0.01 && settings.mass <= 1, "mass", settings.mass, "[0.01, 1] kg");
-  requireSetting("mouse arm", settings.stiffness >= 10 && settings.stiffness <= 2000, "stiffness", settings.stiffness, "[10, 2000] N/m");
-  requireSetting("mouse arm", settings.damping_ratio >= 0 && settings.damping_ratio <= 2, "damping_ratio", settings.damping_ratio,
-                 "[0, 2]");
+  requireSetting("mouse arm", settings.stiffness >= 10 && settings.stiffness <= 2000, "stiffness", settings.stiffness,
+                 "[10, 2000] N/m");
+  requireSetting("mouse arm", settings.damping_ratio >= 0 && settings.damping_ratio <= 2, "damping_ratio",
+                 settings.damping_ratio, "[0, 2]");
 }
 
 ArmSample MouseArm::sample() {
@@ -52,7 +53,8 @@ void MouseArm::advance(double dt) {
   for (int i = 0; i < steps; ++i) {
     p_D_ += 0.5 * h * v_D_;
     const Vec3 f = settings_.stiffness * (p_hand_D_ - p_D_) + f_D_;
-    v_D_ = (v_D_ + h / settings_.mass * f) / (1 + h * b / settings_.mass);  // damping taken at the end: stable whatever it is
+    // damping taken at the end: stable whatever it is
+    v_D_ = (v_D_ + h / settings_.mass * f) / (1 + h * b / settings_.mass);
     p_D_ += 0.5 * h * v_D_;
   }
   time_ += dt;

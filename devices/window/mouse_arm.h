@@ -1,10 +1,13 @@
-// mouse_arm: an arm that is drawn along by the mouse through a spring, so that a force on the finger shows, though nobody feels it.
+// mouse_arm: an arm that is drawn along by the mouse through a spring, so that a force on
+// the finger shows, though nobody feels it.
 //
 //   m a = k (p_hand - p) - b v + f,   b = 2 zeta sqrt(k m)
 //
-//   p fingertip, p_hand where the person wants it [m], f the force that the arm is told to render [N], in D; m of finger and arm [kg]
+//   p fingertip, p_hand where the person wants it [m], f the force that the arm is told to
+//   render [N], in D; m of finger and arm [kg]
 //
-// Half steps of at most 0.25 ms: a drift, a kick with the forces there, a drift. Position and velocity are exact: there is nothing to quantise.
+// Half steps of at most 0.25 ms: a drift, a kick with the forces there, a drift. Position and velocity
+// are exact: there is nothing to quantise.
 #pragma once
 #include "pincer/devices/arm/arm.h"
 

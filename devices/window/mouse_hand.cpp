@@ -5,7 +5,8 @@
 
 namespace pincer::devices {
 
-MouseHand::MouseHand(const std::vector<MouseMount>& mounts, const MouseHandSettings& settings) : settings_(settings), mounts_(mounts) {
+MouseHand::MouseHand(const std::vector<MouseMount>& mounts, const MouseHandSettings& settings)
+    : settings_(settings), mounts_(mounts) {
   if (mounts.empty() || mounts.size() > 2)
     throw std::invalid_argument("a mouse moves one or two fingers, not " + std::to_string(mounts.size()));
   for (const MouseMount& mount : mounts) {

@@ -2,11 +2,13 @@
 //
 //   p_1,2 = c -+ (g/2) e,   e = (cos a, sin a, 0),   g -> g - v dt while squeezing, but not under d - 2 f/k
 //
-//   a  turn of the hand about z [rad], which the fingers' orientations follow;  c  middle of the two [m], the mouse's; g  how far apart the hand wants them [m]; d  how far they are; v  how fast they close [m/s];
+//   a  turn of the hand about z [rad], which the fingers' orientations follow;  c  middle of the two [m], the mouse's;
+//      g  how far apart the hand wants them [m]; d  how far they are; v  how fast they close [m/s];
 //   f  the grip [N], the wheel's; k  stiffness of the arms' springs [N/m]. Frame H: x right, y away, z up.
 //
-// So the fingers never press harder than the grip, and the hand that holds something is as stiff sideways as one that doesn't.
-// Two threads: the window's calls the gestures, the servo's advance() and the arms; they meet in a triple buffer.
+// So the fingers never press harder than the grip, and the hand that holds something is as stiff
+// sideways as one that doesn't. Two threads: the window's calls the gestures, the servo's advance()
+// and the arms; they meet in a triple buffer.
 #pragma once
 #include <vector>
 

@@ -25,7 +25,8 @@ EGLContext coreContext(EGLDisplay display) {
       EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
   const bool has_gl = eglBindAPI(EGL_OPENGL_API) == EGL_TRUE;
-  const EGLContext context = has_gl ? eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kWanted.data()) : EGL_NO_CONTEXT;
+  const EGLContext context =
+      has_gl ? eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kWanted.data()) : EGL_NO_CONTEXT;
   if (context == EGL_NO_CONTEXT) throw DisplayError(std::string("EGL gives no OpenGL 3.3 core.") + kEglRemedy);
   return context;
 }
@@ -33,7 +34,8 @@ EGLContext coreContext(EGLDisplay display) {
 // The display is the process's: EGL hands out one and the same, and ending it would end it for all.
 class OffscreenSurface final : public Surface {
  public:
-  explicit OffscreenSurface(const SurfaceSize& size) : size_(size), display_(surfacelessDisplay()), context_(coreContext(display_)) {
+  explicit OffscreenSurface(const SurfaceSize& size)
+      : size_(size), display_(surfacelessDisplay()), context_(coreContext(display_)) {
     OffscreenSurface::makeCurrent();
   }
   ~OffscreenSurface() override {

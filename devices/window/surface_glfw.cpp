@@ -9,9 +9,9 @@
 namespace pincer::devices {
 namespace {
 
-static_assert(kKeyEscape == GLFW_KEY_ESCAPE && kKeyTab == GLFW_KEY_TAB && kKeyRight == GLFW_KEY_RIGHT && kKeyPageUp == GLFW_KEY_PAGE_UP &&
-              kKeyEnd == GLFW_KEY_END && kKeyF1 == GLFW_KEY_F1 && kKeyF5 == GLFW_KEY_F5 && kKeyShift == GLFW_KEY_LEFT_SHIFT &&
-              kKeyControl == GLFW_KEY_LEFT_CONTROL);
+static_assert(kKeyEscape == GLFW_KEY_ESCAPE && kKeyTab == GLFW_KEY_TAB && kKeyRight == GLFW_KEY_RIGHT &&
+              kKeyPageUp == GLFW_KEY_PAGE_UP && kKeyEnd == GLFW_KEY_END && kKeyF1 == GLFW_KEY_F1 &&
+              kKeyF5 == GLFW_KEY_F5 && kKeyShift == GLFW_KEY_LEFT_SHIFT && kKeyControl == GLFW_KEY_LEFT_CONTROL);
 static_assert(kButtonLeft == GLFW_MOUSE_BUTTON_LEFT && kButtonRight == GLFW_MOUSE_BUTTON_RIGHT);
 
 [[noreturn]] void throwNoWindow(const std::string& what) {
@@ -70,13 +70,17 @@ class WindowSurface final : public Surface {
   }
   bool closed() const override { return glfwWindowShouldClose(window_) == GLFW_TRUE; }
   void toggleFullScreen() override;
-  void showPointer(bool shown) override { glfwSetInputMode(window_, GLFW_CURSOR, shown ? GLFW_CURSOR_NORMAL : GLFW_CURSOR_HIDDEN); }
+  void showPointer(bool shown) override {
+    glfwSetInputMode(window_, GLFW_CURSOR, shown ? GLFW_CURSOR_NORMAL : GLFW_CURSOR_HIDDEN);
+  }
 
  private:
   struct Place {
     int x = 0, y = 0, width = 0, height = 0;
   };
-  static WindowSurface& of(GLFWwindow* window) { return *static_cast<WindowSurface*>(glfwGetWindowUserPointer(window)); }
+  static WindowSurface& of(GLFWwindow* window) {
+    return *static_cast<WindowSurface*>(glfwGetWindowUserPointer(window));
+  }
   static Modifiers modifiers(int mods) { return {(mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_CONTROL) != 0}; }
   // Events are in pixels of what is drawn, which on some displays are finer than the window's own unit.
   InputEvent at(InputKind kind, double x, double y) const {
@@ -113,8 +117,11 @@ void WindowSurface::listen() {
     event.modifiers = modifiers(mods);
     of(window).note(event);
   });
-  glfwSetCursorPosCallback(window_, [](GLFWwindow* window, double x, double y) { of(window).note(of(window).at(InputKind::kMove, x, y)); });
-  glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) { of(window).note({InputKind::kWheel, 0, false, x, y, {}}); });
+  glfwSetCursorPosCallback(
+      window_, [](GLFWwindow* window, double x, double y) { of(window).note(of(window).at(InputKind::kMove, x, y)); });
+  glfwSetScrollCallback(window_, [](GLFWwindow* window, double x, double y) {
+    of(window).note({InputKind::kWheel, 0, false, x, y, {}});
+  });
 }
 
 void WindowSurface::toggleFullScreen() {

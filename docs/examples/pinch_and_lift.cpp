@@ -1,18 +1,21 @@
 // Two fingers close on a bumpy stone, lift it by 50 mm and hold it.
+#include <pincer/pincer.h>
+
 #include <algorithm>
 #include <cstdio>
-
-#include <pincer/pincer.h>
 
 using namespace pincer;
 
 int main() {
-  // The world: a floor and a stone of 80 g, felt as a smooth surface. (A file: contact::readMesh, pincer/contact/mesh_reader.h.)
+  // The world: a floor and a stone of 80 g, felt as a smooth surface. (A file:
+  // contact::readMesh, pincer/contact/mesh_reader.h.)
   engine::WorldBuilder builder{engine::WorldOptions{}};
   builder.addBody({.name = "floor", .shape = contact::HalfSpace{}, .dynamic = false});
   const auto surface = contact::SmoothMesh::build(contact::bumpySphere(0.020, 0.08, 3, 12));
-  const int stone = builder.addBody(
-      {.name = "stone", .shape = contact::Mesh{surface}, .mass = 0.08, .material = {.mu_s = 0.6, .mu_d = 0.5, .torsion_radius = 3e-3}});
+  const int stone = builder.addBody({.name = "stone",
+                                     .shape = contact::Mesh{surface},
+                                     .mass = 0.08,
+                                     .material = {.mu_s = 0.6, .mu_d = 0.5, .torsion_radius = 3e-3}});
 
   // Two fingertips of 8 mm, each on a spring of 500 N/m.
   std::vector<grasp::FingerModel> fingers(2);
@@ -24,7 +27,8 @@ int main() {
   grasp::GraspState state = grasp::makeState(model, starts, {Vec3(-0.05, 0, 0.02), Vec3(0.05, 0, 0.02)});
   const grasp::ScratchHandle scratch = grasp::makeScratch(model);
 
-  // Every millisecond the devices say where the fingers are. Here: one second closing, one second lifting, one second holding.
+  // Every millisecond the devices say where the fingers are. Here: one second
+  // closing, one second lifting, one second holding.
   std::vector<grasp::FingerInput> inputs(2);
   for (int tick = 1; tick <= 3000; ++tick) {
     const double closing = std::min(tick / 1000.0, 1.0), lifting = std::clamp(tick / 1000.0 - 1, 0.0, 1.0);

@@ -1,8 +1,8 @@
 // Runs a scene file and writes what it records as a table: run_scene_file SCENE.json TABLE.csv
+#include <pincer/pincer.h>
+
 #include <cstdio>
 #include <fstream>
-
-#include <pincer/pincer.h>
 
 using namespace pincer;
 

@@ -43,7 +43,8 @@ Moments momentsOf(const contact::Capsule& c) {
   return symmetric(volume, {across, across, along});
 }
 
-// The cross-section is the circular segment of half angle alpha = acos(-d / r) about -x. With its distance from the centre, x = r cos t:
+// The cross-section is the circular segment of half angle alpha = acos(-d / r) about -x. With
+// its distance from the centre, x = r cos t:
 //   A = r^2 (alpha - sin cos),   integral of |x| = (2/3) r^3 sin^3,   of x^2 = (r^4/4)(alpha - sin cos + 2 sin^3 cos),
 //   of y^2 = (r^4/12)(3 alpha - 3 sin cos - 2 sin^3 cos),            sin and cos of alpha
 Moments momentsOf(const contact::CylinderWithFlat& c) {
@@ -66,10 +67,12 @@ Moments momentsOf(const contact::HalfSpace&) {
 }
 
 Moments momentsOf(const contact::Dish&) {
-  throw InputError("A dish is all that lies outside its sphere, so it has neither volume nor mass. Make its body static.");
+  throw InputError(
+      "A dish is all that lies outside its sphere, so it has neither volume nor mass. Make its body static.");
 }
 
-// Sums over the tetrahedra between the triangles and the mean vertex, signed. With edges a, b, c from there and s = a + b + c:
+// Sums over the tetrahedra between the triangles and the mean vertex, signed. With
+// edges a, b, c from there and s = a + b + c:
 //   6 V = det,   24 (first moment) = det s,   120 (second moment) = det (a a^T + b b^T + c c^T + s s^T)
 Moments momentsOf(const contact::TriangleMesh& mesh) {
   Vec3 origin = Vec3::Zero();
@@ -78,8 +81,11 @@ Moments momentsOf(const contact::TriangleMesh& mesh) {
   Vec3 first = Vec3::Zero();
   Mat3 second = Mat3::Zero();
   for (const auto& triangle : mesh.triangles) {
-    PINCER_ASSERT(std::all_of(triangle.begin(), triangle.end(), [&](auto v) { return isIndex(v, mesh.vertices.size()); }));
-    const auto corner = [&](std::size_t k) -> Vec3 { return mesh.vertices[static_cast<std::size_t>(triangle[k])] - origin; };
+    PINCER_ASSERT(
+        std::all_of(triangle.begin(), triangle.end(), [&](auto v) { return isIndex(v, mesh.vertices.size()); }));
+    const auto corner = [&](std::size_t k) -> Vec3 {
+      return mesh.vertices[static_cast<std::size_t>(triangle[k])] - origin;
+    };
     const Vec3 a = corner(0), b = corner(1), c = corner(2), s = a + b + c;
     const double det = a.dot(b.cross(c));
     volume += det / 6;
@@ -87,10 +93,10 @@ Moments momentsOf(const contact::TriangleMesh& mesh) {
     second += det / 120 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
   }
   if (!(volume > 0))
-    throw InputError(
-        fmt::format("{}: the mesh encloses a volume of {:g} m^3, which must be positive. Its triangles must bound a solid without "
-                    "gaps and turn counter-clockwise seen from outside.",
-                    mesh.source, volume));
+    throw InputError(fmt::format(
+        "{}: the mesh encloses a volume of {:g} m^3, which must be positive. Its triangles must bound a solid without "
+        "gaps and turn counter-clockwise seen from outside.",
+        mesh.source, volume));
   const Vec3 centre = first / volume;
   return {volume, origin + centre, second / volume - centre * centre.transpose()};
 }
@@ -114,7 +120,8 @@ Moments momentsOf(const contact::Shape& shape) {
 
 MassProperties massProperties(const Moments& moments, double mass) {
   if (!(mass > 0) || !std::isfinite(mass))
-    throw InputError(fmt::format("mass = {} kg is out of range (0, inf). Give the body a positive mass, or make it static.", mass));
+    throw InputError(
+        fmt::format("mass = {} kg is out of range (0, inf). Give the body a positive mass, or make it static.", mass));
   return {mass, moments.centre, mass * (moments.spread.trace() * Mat3::Identity() - moments.spread)};
 }
 
@@ -123,8 +130,12 @@ MassProperties massProperties(const Moments& moments, double mass) {
 double volumeOf(const contact::Shape& shape) { return momentsOf(shape).volume; }
 double volumeOf(const contact::TriangleMesh& mesh) { return momentsOf(mesh).volume; }
 
-MassProperties massPropertiesOf(const contact::Shape& shape, double mass) { return massProperties(momentsOf(shape), mass); }
-MassProperties massPropertiesOf(const contact::TriangleMesh& mesh, double mass) { return massProperties(momentsOf(mesh), mass); }
+MassProperties massPropertiesOf(const contact::Shape& shape, double mass) {
+  return massProperties(momentsOf(shape), mass);
+}
+MassProperties massPropertiesOf(const contact::TriangleMesh& mesh, double mass) {
+  return massProperties(momentsOf(mesh), mass);
+}
 
 MassProperties movedBy(const Pose& X_BS, const MassProperties& properties) {
   const Mat3 R = X_BS.q.toRotationMatrix(), I = R * properties.I_BBcm * R.transpose();

@@ -33,7 +33,8 @@ OneFreedomCourse sumSeries(const OneFreedomLaw& law, double rate, double h) {
   C[0] = 1;
   S[0] = 0;
   double way = nx[1], speed = nx[1], largest = std::abs(nx[1]);
-  int small = 0;  // terms in a row: of four, three may be nothing by symmetry (let go at the height of its pivot: t^2, t^6, t^10)
+  // terms in a row: of four, three may be nothing by symmetry (let go at the height of its pivot: t^2, t^6, t^10)
+  int small = 0;
   for (std::size_t n = 0; n + 2 <= kMostTerms && small < 4; ++n) {
     if (n > 0) {
       double dC = 0, dS = 0;
@@ -73,7 +74,8 @@ OneFreedomCourse decayTurning(const OneFreedomLaw& law, double rate, double h) {
 OneFreedomCourse followFreedom(const OneFreedomLaw& law, double rate, double h) {
   PINCER_ASSERT(law.c >= 0);
   if (!(h > 0)) return {0, rate};
-  const double turning = law.turns ? h * (std::abs(rate) + std::sqrt(math::hypot(law.a, law.b) + std::abs(law.d))) / kLongestTurn : 0;
+  const double turning =
+      law.turns ? h * (std::abs(rate) + std::sqrt(math::hypot(law.a, law.b) + std::abs(law.d))) / kLongestTurn : 0;
   const double steps = std::ceil(std::max({1.0, turning, h * law.c / kLargestDecay}));
   if (!(h * law.c <= kMostDecay)) return decayTurning(law, rate, h);
   if (!(steps <= kMostSteps))

@@ -7,7 +7,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kDiagonal = 1e-13;           // of the trace: off-diagonal elements below are round-off of sums over triangles
+constexpr double kDiagonal = 1e-13;  // of the trace: off-diagonal elements below are round-off of sums over triangles
 constexpr double kTriangleInequality = 1e-9;  // relative slack: a thin plate fulfils it with equality
 constexpr int kSweeps = 12;                   // Jacobi's method converges quadratically; 5 is usual
 
@@ -16,7 +16,8 @@ bool isDiagonal(const Mat3& A, double tolerance) {
   return std::abs(A(0, 1)) <= limit && std::abs(A(0, 2)) <= limit && std::abs(A(1, 2)) <= limit;
 }
 
-// Rotates A and R in the plane (p, q) so that A(p, q) vanishes. Source: Golub, Van Loan, Matrix Computations, 4th ed., section 8.5.2.
+// Rotates A and R in the plane (p, q) so that A(p, q) vanishes. Source: Golub, Van Loan,
+// Matrix Computations, 4th ed., section 8.5.2.
 void annihilate(Mat3& A, Mat3& R, int p, int q) {
   if (A(p, q) == 0) return;
   const double theta = (A(q, q) - A(p, p)) / (2 * A(p, q));
@@ -36,11 +37,13 @@ void check(const Vec3& moments) {
   const double sum = moments.sum();
   for (int axis = 0; axis < 3; ++axis) {
     if (!(moments[axis] > 0) || !std::isfinite(sum))
-      throw InputError(fmt::format("principal moment of inertia {} = {:g} kg m^2 is out of range (0, inf). A solid's moments are positive.",
-                                   axis + 1, moments[axis]));
+      throw InputError(fmt::format(
+          "principal moment of inertia {} = {:g} kg m^2 is out of range (0, inf). A solid's moments are positive.",
+          axis + 1, moments[axis]));
     if (moments[axis] > (sum - moments[axis]) * (1 + kTriangleInequality))
       throw InputError(
-          fmt::format("principal moments of inertia ({:g}, {:g}, {:g}) kg m^2: no solid has one that exceeds the sum of the others. "
+          fmt::format("principal moments of inertia ({:g}, {:g}, {:g}) kg m^2: no solid has one that exceeds the sum "
+                      "of the others. "
                       "Check the inertia's unit and axes.",
                       moments[0], moments[1], moments[2]));
   }

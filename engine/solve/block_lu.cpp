@@ -102,8 +102,8 @@ void BlockLu::begin(int nodes) {
 void BlockLu::connect(int a, int b) {
   PINCER_ASSERT(0 <= a && a < nodes_ && 0 <= b && b < nodes_);
   if (a == b) return;
-  const std::uint64_t edge =
-      static_cast<std::uint64_t>(std::min(a, b)) * static_cast<std::uint64_t>(nodes_) + static_cast<std::uint64_t>(std::max(a, b));
+  const std::uint64_t edge = static_cast<std::uint64_t>(std::min(a, b)) * static_cast<std::uint64_t>(nodes_) +
+                             static_cast<std::uint64_t>(std::max(a, b));
   if (!edges_.empty() && edges_.back() == edge) return;  // contacts of one pair follow each other
   if (edges_.size() == edges_.capacity()) sortEdges();
   if (edges_.size() < edges_.capacity()) edges_.push_back(edge);
@@ -132,7 +132,8 @@ bool BlockLu::analyse(int most) {
   std::fill(neighbours_.begin(), neighbours_.begin() + nodes_ * words_, 0);
   std::fill(degree_.begin(), degree_.begin() + nodes_, 0);
   for (const std::uint64_t edge : edges_) {
-    link(static_cast<int>(edge / static_cast<std::uint64_t>(nodes_)), static_cast<int>(edge % static_cast<std::uint64_t>(nodes_)));
+    link(static_cast<int>(edge / static_cast<std::uint64_t>(nodes_)),
+         static_cast<int>(edge % static_cast<std::uint64_t>(nodes_)));
   }
   used_ = 0;
   products_ = nodes_;
@@ -224,7 +225,8 @@ bool BlockLu::factorise() {
     for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) {
       double* const L = block(lower_[i]);
       multiply(L, pivot, L);
-      for (int j = first_later_[k]; j < first_later_[k + 1]; ++j) subtractProduct(L, block(upper_[j]), block(*target++));
+      for (int j = first_later_[k]; j < first_later_[k + 1]; ++j)
+        subtractProduct(L, block(upper_[j]), block(*target++));
     }
   }
   return true;
@@ -234,11 +236,13 @@ void BlockLu::solve(double* b) const {
   const auto at = [&](int slot) { return blocks_.data() + kBB * slot; };
   for (int k = 0; k < nodes_; ++k) {
     const double* const b_k = b + kB * order_[k];
-    for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) subtractProduct6(at(lower_[i]), b_k, b + kB * later_[i]);
+    for (int i = first_later_[k]; i < first_later_[k + 1]; ++i)
+      subtractProduct6(at(lower_[i]), b_k, b + kB * later_[i]);
   }
   for (int k = nodes_ - 1; k >= 0; --k) {
     double* const b_k = b + kB * order_[k];
-    for (int j = first_later_[k]; j < first_later_[k + 1]; ++j) subtractProduct6(at(upper_[j]), b + kB * later_[j], b_k);
+    for (int j = first_later_[k]; j < first_later_[k + 1]; ++j)
+      subtractProduct6(at(upper_[j]), b + kB * later_[j], b_k);
     double x[kB] = {};
     const double* const inverse = at(place(order_[k], order_[k]));
     for (int i = 0; i < kB; ++i) {

@@ -2,11 +2,13 @@
 //
 //   K_mu = { r : |r_T| <= mu r_n },   r = (r_t1, r_t2, r_n[, r_tau[, r_rho1, r_rho2]]),   r_T = r without r_n
 //
-//   r    impulse [N s], velocity [m/s] or anything in proportion to them, in the contact frame C, whose third axis is the normal
+//   r    impulse [N s], velocity [m/s] or anything in proportion to them, in the
+//        contact frame C, whose third axis is the normal
 //   mu   friction coefficient [-], 0 <= mu < inf; 0 gives the half-line r_T = 0, r_n >= 0
 // Nothing here can fail; what isn't finite on entry isn't finite, or isn't inside, on return.
-// Sources: projection onto a second-order cone: F. Alizadeh, D. Goldfarb, Math. Program. 95 (2003) 3-51. The two coupled projections
-// (normal first, then a disc whose radius follows it): P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375.
+// Sources: projection onto a second-order cone: F. Alizadeh, D. Goldfarb, Math. Program. 95 (2003) 3-51. The
+// two coupled projections (normal first, then a disc whose radius follows it): P. Alart, A. Curnier, Comput.
+// Methods Appl. Mech. Engrg. 92 (1991) 353-375.
 #pragma once
 #include <cmath>
 
@@ -40,7 +42,8 @@ inline bool isInCone(const double* r, int rows, double mu, double slack = 0) {
   return r[kNormalRow] >= 0 && tangentNorm2(r, rows) <= radius * radius;
 }
 
-[[gnu::always_inline]] inline void setVector(double* v, int rows, double tangent_scale, const double* direction, double normal) {
+[[gnu::always_inline]] inline void setVector(double* v, int rows, double tangent_scale, const double* direction,
+                                             double normal) {
   for (int k = 0; k < rows; ++k) v[k] = tangent_scale * direction[k];
   v[kNormalRow] = normal;
 }
@@ -50,12 +53,14 @@ inline bool isInCone(const double* r, int rows, double mu, double slack = 0) {
   const double yT2 = tangentNorm2(y, rows), yn = y[kNormalRow], radius = mu * yn;
   if (yn > 0 && yT2 <= radius * radius) return setVector(p, rows, 1, y, yn);  // inside, mostly: no root
   const double yT = std::sqrt(yT2);
-  if (mu * yT <= -yn) return setVector(p, rows, 0, y, 0);  // in the polar cone; asked first: a pull without friction has yT = mu yn = 0
-  const double normal = (yn + mu * yT) / (1 + mu * mu);    // yT > 0 here: the cases above cover yT = 0
+  // in the polar cone; asked first: a pull without friction has yT = mu yn = 0
+  if (mu * yT <= -yn) return setVector(p, rows, 0, y, 0);
+  const double normal = (yn + mu * yT) / (1 + mu * mu);  // yT > 0 here: the cases above cover yT = 0
   setVector(p, rows, mu * normal / yT, y, normal);
 }
 
-// The three ways in which Alart and Curnier's coupled projections act on y: off (y_n <= 0), inside the disc of radius mu y_n, or onto its rim.
+// The three ways in which Alart and Curnier's coupled projections act on y: off (y_n <= 0), inside
+// the disc of radius mu y_n, or onto its rim.
 enum class ContactMode : unsigned char { kOpen, kStick, kSlide };
 
 [[gnu::always_inline]] inline ContactMode contactMode(const double* y, int rows, double mu) {
@@ -64,7 +69,8 @@ enum class ContactMode : unsigned char { kOpen, kStick, kSlide };
   return tangentNorm2(y, rows) <= mu * mu * yn * yn ? ContactMode::kStick : ContactMode::kSlide;
 }
 
-// Derivative D of the coupled projections of a sliding y:  dp_T = s (I - t t^T) dy_T + mu t dy_n,  dp_n = dy_n,  t = y_T / |y_T|,  s = mu y_n / |y_T|.
+// Derivative D of the coupled projections of a sliding y:  dp_T = s (I - t t^T) dy_T + mu t dy_n,  dp_n =
+//                                                          dy_n,  t = y_T / |y_T|,  s = mu y_n / |y_T|.
 struct SlideDerivative {
   double t[kMaxContactRows];  // [-]; its normal row is 0
   double s;                   // [-], 0 <= s < 1
@@ -85,15 +91,19 @@ struct SlideDerivative {
   return d;
 }
 
-// Derivative D of the projection onto K_mu of a y outside of it and of its polar cone:  D = z z^T / (1 + mu^2) + mu (p_n / |y_T|) (I_T - t t^T),  t = y_T / |y_T|,
+// Derivative D of the projection onto K_mu of a y outside of it and of its polar cone:  D = z z^T / (1 + mu^2) + mu
+// (p_n / |y_T|) (I_T - t t^T),  t = y_T / |y_T|,
 // z = mu t + e_n,  p_n = (y_n + mu |y_T|) / (1 + mu^2). Symmetric; I_T the identity but for the normal row.
-[[gnu::always_inline]] inline void rimDerivative(const double* y, int rows, double mu, double (&D)[kMaxContactRows][kMaxContactRows]) {
-  const double yT = std::sqrt(tangentNorm2(y, rows)), inverse = 1 / (1 + mu * mu), bend = mu * (y[kNormalRow] + mu * yT) * inverse / yT;
+[[gnu::always_inline]] inline void rimDerivative(const double* y, int rows, double mu,
+                                                 double (&D)[kMaxContactRows][kMaxContactRows]) {
+  const double yT = std::sqrt(tangentNorm2(y, rows)), inverse = 1 / (1 + mu * mu),
+               bend = mu * (y[kNormalRow] + mu * yT) * inverse / yT;
   double t[kMaxContactRows], z[kMaxContactRows];
   setVector(t, rows, 1 / yT, y, 0);
   setVector(z, rows, mu / yT, y, 1);
   for (int k = 0; k < rows; ++k) {
-    for (int l = 0; l < rows; ++l) D[k][l] = inverse * z[k] * z[l] + bend * ((k == l && k != kNormalRow ? 1 : 0) - t[k] * t[l]);
+    for (int l = 0; l < rows; ++l)
+      D[k][l] = inverse * z[k] * z[l] + bend * ((k == l && k != kNormalRow ? 1 : 0) - t[k] * t[l]);
   }
 }
 
@@ -107,7 +117,8 @@ template <class Rows>
   return sum;
 }
 
-// Squared natural map |w r - P_K(w r - u~)|^2 of the frictional contact law, u~ = u + mu |u_T| e_n; 0 iff r and u obey it [(m/s)^2].
+// Squared natural map |w r - P_K(w r - u~)|^2 of the frictional contact law, u~ = u + mu
+// |u_T| e_n; 0 iff r and u obey it [(m/s)^2].
 //   w  > 0: scale that turns impulses into velocities [1/kg]. K is a cone, so w P_K(y) = P_K(w y): no division.
 inline double naturalMap2(const double* r, const double* u, int rows, double mu, double w) {
   if (rows != kTorsionRow) return naturalMap2Of(rows, r, u, mu, w);

@@ -68,7 +68,9 @@ int numberMovers(const ContactProblem& problem, int* node) {
   return nodes;
 }
 
-int nodeOf(const SolverScratch& scratch, const ContactSide& side) { return side.mover < 0 ? -1 : scratch.node[side.mover]; }
+int nodeOf(const SolverScratch& scratch, const ContactSide& side) {
+  return side.mover < 0 ? -1 : scratch.node[side.mover];
+}
 
 }  // namespace
 
@@ -165,7 +167,8 @@ int ContactEquations::assembleRows(int i, int row) {
   withRows(rows, [&](auto count) {
     double* out = A_ + row;
     for (int a = 0; a < active_count_; ++a) {
-      for (int column = problem_.firstRow(active_[a]); column < problem_.firstRow(active_[a] + 1); ++column, out += size_) {
+      for (int column = problem_.firstRow(active_[a]); column < problem_.firstRow(active_[a] + 1);
+           ++column, out += size_) {
         const double* const W = problem_.W + column * m + first;
         for (int k = 0; k < count; ++k) {
           out[k] = is_identity ? W[k] : 0;
@@ -251,7 +254,8 @@ void ContactEquations::addToMovers(int i) {
     double GA[kStride][kMoverFreedoms];
     withRows(rows, [&](auto count) {
       for (int k = 0; k < count; ++k) {
-        for (int j = 0; j < kMoverFreedoms; ++j) GA[k][j] = t.G[kStride * k + (is_scalar ? k : 0)] * b.A[is_scalar ? k : 0][j];
+        for (int j = 0; j < kMoverFreedoms; ++j)
+          GA[k][j] = t.G[kStride * k + (is_scalar ? k : 0)] * b.A[is_scalar ? k : 0][j];
         for (int l = 1; l < count && !is_scalar; ++l) {
           for (int j = 0; j < kMoverFreedoms; ++j) GA[k][j] += t.G[kStride * k + l] * b.A[l][j];
         }

@@ -4,11 +4,13 @@
 //
 // Two ways to the same x, chosen once per solve:
 //   contact by contact   E + P W^ as a dense matrix of the contacts' rows. For few contacts.
-//   mover by mover       with y = A^T x:  (I + A^T G A) y = A^T K^-1 b,   x = K^-1 b - G A y,   K = E + P R,   G = K^-1 P
-//     A mover that only one contact touches is no unknown but part of R_i: fingers around an object cost 6 unknowns, not 6 per finger. The rest
-//     is block-sparse by the graph of movers (block_lu.h). For redundant contacts (many on few movers), and for many contacts.
-// Source: the second is Woodbury's identity (Golub, Van Loan, Matrix Computations, 4th ed., section 2.1.4) on V. Acary, M. Bremond,
-// O. Huber, Advanced Topics in Nonsmooth Dynamics (2018), eq. (9.57).
+//   mover by mover       with y = A^T x:  (I + A^T G A) y = A^T K^-1 b,   x = K^-1 b - G A y,   K
+//                                                                         = E + P R,   G = K^-1 P
+//     A mover that only one contact touches is no unknown but part of R_i: fingers around an object cost 6
+//     unknowns, not 6 per finger. The rest is block-sparse by the graph of movers (block_lu.h). For redundant
+//     contacts (many on few movers), and for many contacts.
+// Source: the second is Woodbury's identity (Golub, Van Loan, Matrix Computations, 4th ed., section 2.1.4) on V. Acary,
+// M. Bremond, O. Huber, Advanced Topics in Nonsmooth Dynamics (2018), eq. (9.57).
 #pragma once
 #include "pincer/engine/solve/scaled_problem.h"
 
@@ -22,7 +24,8 @@ class ContactEquations {
  public:
   ContactEquations(const ScaledProblem& problem, EquationForm form, SolverScratch& scratch);
 
-  // Contact i's equation: x_i = b_i;  epsilon x_i + (W^ x)_i = b_i;  or E x_i + P (W^ x)_i = b_i, row-major with stride 4.
+  // Contact i's equation: x_i = b_i;  epsilon x_i + (W^ x)_i = b_i;  or E x_i + P (W^ x)_i = b_i,
+  //                                                                  row-major with stride 4.
   void decouple(int i) { terms_[i].coupling = Coupling::kNone; }
   void identify(int i, double epsilon);
   void setGeneral(int i, const double* E, const double* P);

@@ -3,15 +3,18 @@
 //   u = W r + q,     K*_mu contains u + mu |u_T| e_n,  perpendicular to  r in K_mu      (per contact)
 //   W = A A^T,       A_ib = J_ib M_b^-1/2      (contact i, mover b)
 //
-//   W  Delassus operator J M^-1 J^T [1/kg], symmetric positive semi-definite. It is never stored whole: A has two blocks per contact
-//   A  how contact i's velocity follows mover b's scaled velocity M_b^1/2 v_b [kg^-1/2]; M^-1/2 any factor with M^-1/2 M^-T/2 = M^-1
+//   W  Delassus operator J M^-1 J^T [1/kg], symmetric positive semi-definite. It is never
+//      stored whole: A has two blocks per contact
+//   A  how contact i's velocity follows mover b's scaled velocity M_b^1/2 v_b [kg^-1/2];
+//      M^-1/2 any factor with M^-1/2 M^-T/2 = M^-1
 //   q  contact velocity that the step would end with if no contact acted, plus biases [m/s]
 //   r  contact impulses [N s];  u  contact velocities [m/s]
-// A contact has 3 rows (t1, t2, n), 4 (and torsion, about n), or 6 (and rolling, about t1 and t2). Torsion is scaled by its equivalent radius e_t,
-// rolling by e_r, so that they, too, are in m/s and N s. K_mu = { |(r_t1, r_t2[, r_tau[, r_rho1, r_rho2]])| <= mu r_n }. The shift mu |u_T| e_n is de Saxce's: with it sliding is tangential
-// (no dilation). A mover that doesn't move has no block. Compliance is inertia: a mover of its own.
-// Source: G. De Saxce, Z.-Q. Feng, Math. Comput. Modelling 28 (1998) 225-245; notation of V. Acary, F. Cadoux, C. Lemarechal, J. Malick,
-// ZAMM 91 (2011) 155-175, eq. (10).
+// A contact has 3 rows (t1, t2, n), 4 (and torsion, about n), or 6 (and rolling, about t1 and t2). Torsion is
+// scaled by its equivalent radius e_t, rolling by e_r, so that they, too, are in m/s and N s. K_mu = { |(r_t1,
+// r_t2[, r_tau[, r_rho1, r_rho2]])| <= mu r_n }. The shift mu |u_T| e_n is de Saxce's: with it sliding is
+// tangential (no dilation). A mover that doesn't move has no block. Compliance is inertia: a mover of its own.
+// Source: G. De Saxce, Z.-Q. Feng, Math. Comput. Modelling 28 (1998) 225-245; notation of V. Acary, F. Cadoux, C.
+// Lemarechal, J. Malick, ZAMM 91 (2011) 155-175, eq. (10).
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -27,7 +30,8 @@ using VectorMap = Eigen::Map<Eigen::VectorXd>;
 
 constexpr int kMoverFreedoms = 6;
 
-// Calls act with the number of rows, as a constant where it is three: nearly all contacts have three, and the compiler knows what to do then.
+// Calls act with the number of rows, as a constant where it is three: nearly all contacts have
+// three, and the compiler knows what to do then.
 template <class Act>
 [[gnu::always_inline]] inline void withRows(int rows, const Act& act) {
   if (rows == kTorsionRow) {
@@ -63,8 +67,8 @@ struct ContactProblem {
   std::span<const ContactSide> sides;  // contact by contact: two each, or those of first_side
   VectorMap q;                         // m
   int movers = 0;
-  bool strict = false;                       // the warm start is only taken where it is exact to round-off, see contact_solver.h
-  bool calm = false;                         // nothing of it moves faster than rest (restErrorOf)
+  bool strict = false;  // the warm start is only taken where it is exact to round-off, see contact_solver.h
+  bool calm = false;    // nothing of it moves faster than rest (restErrorOf)
   std::span<const RoundContact> round = {};  // of each contact; empty where nobody looked
   std::span<const int> first_side = {};      // size n + 1; empty where every contact has two sides
 
@@ -77,7 +81,8 @@ struct ContactProblem {
   std::span<const ContactSide> sidesOf(int contact) const {
     const auto i = static_cast<std::size_t>(contact);
     if (first_side.empty()) return sides.subspan(2 * i, 2);
-    return sides.subspan(static_cast<std::size_t>(first_side[i]), static_cast<std::size_t>(first_side[i + 1] - first_side[i]));
+    return sides.subspan(static_cast<std::size_t>(first_side[i]),
+                         static_cast<std::size_t>(first_side[i + 1] - first_side[i]));
   }
 };
 

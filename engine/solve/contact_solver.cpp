@@ -18,10 +18,11 @@ namespace {
 constexpr std::int64_t kPerSmallStep = 1000;  // multiplications; of three contacts at most
 constexpr int kFewestStops = 4;               // sweeps, whatever is left of the budget
 
-// Scales r so that  E(r) = r . (q + W r / 2),  the energy that it brings in, isn't positive: to the minimum of E on its ray.
-// The biases within q count as velocities, and compliance within W as inertia: the best that can be said without knowing the bodies, and on
-// the safe side but for work that a bias does on purpose (a penetration pushed out, a restitution).
-// False if there was nothing to do.
+// Scales r so that  E(r) = r . (q + W r / 2),  the energy that it brings in, isn't
+//                                              positive: to the minimum of E on its ray.
+// The biases within q count as velocities, and compliance within W as inertia: the best that can be said without
+// knowing the bodies, and on the safe side but for work that a bias does on purpose (a penetration pushed out, a
+// restitution). False if there was nothing to do.
 bool removeAddedEnergy(const ContactProblem& problem, double* r, const double* u) {
   double work = 0;      // r . q
   double response = 0;  // r . W r
@@ -57,8 +58,8 @@ void settleEnergy(const ContactProblem& problem, SolverScratch& scratch, double*
 
 }  // namespace
 
-void solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
-                   SolveResult& result) {
+void solveContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r,
+                   double* u, SolveResult& result) {
   result = {};
   if (problem.contactCount() == 0) return;
   PINCER_ASSERT(problem.first_row.size() == problem.mu.size() + 1);
@@ -73,14 +74,14 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   if (is_solved) return;
   const bool is_few = problem.contactCount() <= kFewContacts;
   if (is_few) solveFew(problem, options, scratch, r, u, result);
-  if (!is_few ||
-      (!result.converged && !result.yields && problem.contactCount() >= kManyContacts && options.thorough && scratch.operations_left >= 0))
+  if (!is_few || (!result.converged && !result.yields && problem.contactCount() >= kManyContacts && options.thorough &&
+                  scratch.operations_left >= 0))
     result = searchImpulses(problem, options, scratch, r, u);
   settleEnergy(problem, scratch, r, u, result);
 }
 
-bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
-                 SolveResult& result) {
+bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r,
+                 double* u, SolveResult& result) {
   if (!problem.calm) return false;
   projectOntoCones(problem, r);
   weighContacts(problem, scratch);
@@ -90,8 +91,8 @@ bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, So
   return true;
 }
 
-double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r, SolverScratch& scratch,
-                       Eigen::Ref<Eigen::VectorXd> u) {
+double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r,
+                       SolverScratch& scratch, Eigen::Ref<Eigen::VectorXd> u) {
   weighContacts(problem, scratch);
   return errorOf(problem, r.data(), scratch, u.data()).residual;
 }

@@ -18,13 +18,15 @@ constexpr double kNoEntry = 1e-6;    // the same: what may lie below 0 of what i
 void check(const DenseProblem& problem) {
   const auto contacts = static_cast<Eigen::Index>(problem.mu.size()), rows = kTorsionRow * contacts;
   if (problem.W.rows() != rows || problem.W.cols() != rows || problem.q.size() != rows) {
-    throw InputError(fmt::format("contact problem: {} contacts need a W of {} x {} and a q of {}; W is {} x {}, q has {}.", contacts, rows,
-                                 rows, rows, problem.W.rows(), problem.W.cols(), problem.q.size()));
+    throw InputError(
+        fmt::format("contact problem: {} contacts need a W of {} x {} and a q of {}; W is {} x {}, q has {}.", contacts,
+                    rows, rows, rows, problem.W.rows(), problem.W.cols(), problem.q.size()));
   }
   if (!problem.W.allFinite() || !problem.q.allFinite()) throw InputError("contact problem: W or q isn't finite.");
   for (std::size_t i = 0; i < problem.mu.size(); ++i) {
     if (!(problem.mu[i] >= 0) || !std::isfinite(problem.mu[i]))
-      throw InputError(fmt::format("contact problem: friction {} of contact {}; it must be 0 or more.", problem.mu[i], i));
+      throw InputError(
+          fmt::format("contact problem: friction {} of contact {}; it must be 0 or more.", problem.mu[i], i));
   }
   const double largest = rows == 0 ? 0 : problem.W.cwiseAbs().maxCoeff();
   if (rows > 0 && (problem.W - problem.W.transpose()).cwiseAbs().maxCoeff() > kSameEntry * largest)
@@ -57,7 +59,8 @@ struct FactoredProblem {
   std::vector<ContactSide> sides;
   int movers = 0, most_sides = 0;
 
-  explicit FactoredProblem(const Eigen::MatrixXd& A) : movers(static_cast<int>((A.cols() + kMoverFreedoms - 1) / kMoverFreedoms)) {
+  explicit FactoredProblem(const Eigen::MatrixXd& A)
+      : movers(static_cast<int>((A.cols() + kMoverFreedoms - 1) / kMoverFreedoms)) {
     const int contacts = static_cast<int>(A.rows()) / kTorsionRow;
     for (int i = 0; i <= contacts; ++i) {
       first_row.push_back(kTorsionRow * i);
@@ -68,7 +71,8 @@ struct FactoredProblem {
     }
   }
   void addSide(const Eigen::MatrixXd& A, int contact, int mover) {
-    const Eigen::Index first = kMoverFreedoms * mover, columns = std::min<Eigen::Index>(kMoverFreedoms, A.cols() - first);
+    const Eigen::Index first = kMoverFreedoms * mover,
+                       columns = std::min<Eigen::Index>(kMoverFreedoms, A.cols() - first);
     const auto block = A.block(kTorsionRow * contact, first, kTorsionRow, columns);
     if (block.isZero(0)) return;
     ContactSide side{.mover = mover, .is_point = false, .A = {}};
@@ -119,7 +123,8 @@ DenseAnswer solveDense(const DenseProblem& problem, const SolverOptions& options
   // A W that isn't quite semi-definite has no factor: what A A^T leaves of it is taken from the last answer.
   for (int n = 0; n <= kRefinements; ++n) {
     DenseAnswer next = answer;
-    next.result = solveContacts(posed, options, scratch, VectorMap(next.r.data(), next.r.size()), VectorMap(next.u.data(), next.u.size()));
+    next.result = solveContacts(posed, options, scratch, VectorMap(next.r.data(), next.r.size()),
+                                VectorMap(next.u.data(), next.u.size()));
     next.result.iterations += answer.result.iterations;
     next.u = problem.W * next.r + problem.q;
     next.natural_map = naturalMapOf(problem, next.r, next.u);

@@ -22,15 +22,17 @@ constexpr int kProximalRounds = 12, kInteriorPointSteps = 30;         // each ti
 struct Patience {
   int newton_steps, shift_updates, sweeps;
 };
-constexpr Patience patienceOf(const SolverOptions& options) { return options.accuracy > 0 ? Patience{12, 3, 60} : Patience{20, 20, 300}; }
+constexpr Patience patienceOf(const SolverOptions& options) {
+  return options.accuracy > 0 ? Patience{12, 3, 60} : Patience{20, 20, 300};
+}
 constexpr double kNearSolution = 1e-8;  // residual from which Newton's method needs a step or two
 constexpr double kShiftedGap = 1e-6;    // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;     // enough to leave the basin in which Newton's method failed
 constexpr int kGivingRounds = 12;
 constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
-constexpr double kContentSpeed =
-    1e-8;  // [m/s], or as much as a residual: enough once Newton's method failed. Contacts that contradict each other by the
-           // round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt
+// [m/s], or as much as a residual: enough once Newton's method failed. Contacts that contradict each other by the
+// round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt
+constexpr double kContentSpeed = 1e-8;
 
 double contentResidual(const SolverOptions& options, double reference_speed) {
   return options.accuracy > 0 ? std::max(kContentSpeed, kContentSpeed / reference_speed) : options.tolerance;
@@ -40,7 +42,8 @@ double contentResidual(const SolverOptions& options, double reference_speed) {
 class FewSearch {
  public:
   // r, u, residual: the warm start, evaluated
-  FewSearch(const ContactProblem& problem, EquationForm form, SolverScratch& scratch, const double* r, const double* u, double residual)
+  FewSearch(const ContactProblem& problem, EquationForm form, SolverScratch& scratch, const double* r, const double* u,
+            double residual)
       : form_(form),
         unscaled_(problem),
         problem_(scaleProblem(problem, form_ == EquationForm::kContacts, scratch)),
@@ -67,11 +70,13 @@ class FewSearch {
     if (isSpent() || (!(options.largest_give > 0) && isSqueezedNow())) return SolveMethod::kNotConverged;
     restartFromBest();
     evaluate(problem_, current_);
-    iterations_ += iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
+    iterations_ +=
+        iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
     keepBest();
     if ((isEnough(options) && !isSqueezedNow()) || giveWay(options)) return SolveMethod::kNewton;
     if (!options.thorough || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
-    iterations_ += followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
+    iterations_ +=
+        followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
     if (finish(options)) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
     if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
@@ -88,7 +93,8 @@ class FewSearch {
   SolveMethod polish(const SolverOptions& options) {
     constexpr int kPolishSteps = 2;
     keepBest();
-    iterations_ += iterateNewton(problem_, kStrictness * options.tolerance, kPolishSteps, equations_, scratch_, current_, trial_);
+    iterations_ +=
+        iterateNewton(problem_, kStrictness * options.tolerance, kPolishSteps, equations_, scratch_, current_, trial_);
     keepBest();
     return SolveMethod::kNewton;
   }
@@ -137,9 +143,11 @@ class FewSearch {
   bool finish(const SolverOptions& options) {
     const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
     keepBest();
-    iterations_ += iterateNewton(problem_, tolerance, patienceOf(options).newton_steps, equations_, scratch_, current_, trial_);
+    iterations_ +=
+        iterateNewton(problem_, tolerance, patienceOf(options).newton_steps, equations_, scratch_, current_, trial_);
     keepBest();
-    return isEnough(options) && !(options.largest_give > 0 && isSqueezedNow());  // residuals are relative to impulses that grow without end
+    // residuals are relative to impulses that grow without end
+    return isEnough(options) && !(options.largest_give > 0 && isSqueezedNow());
   }
   bool isEnough(const SolverOptions& options) const {
     return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
@@ -152,7 +160,8 @@ class FewSearch {
     if (isSqueezedNow()) std::fill(current_.r, current_.r + problem_.rowCount(), 0.0);
     evaluate(problem_, current_);
     double give = options.largest_give;
-    iterations_ += iterateGiving(problem_, 0.5 * options.tolerance, kGivingRounds, equations_, scratch_, current_, trial_, give);
+    iterations_ +=
+        iterateGiving(problem_, 0.5 * options.tolerance, kGivingRounds, equations_, scratch_, current_, trial_, give);
     if (!(give <= options.largest_give)) return false;
     give_ = give;
     best_.residual = std::numeric_limits<double>::infinity();
@@ -164,7 +173,8 @@ class FewSearch {
   bool isSqueezedNow() {
     double* const r = scratch_.step.data();
     for (int i = 0; i < problem_.contactCount(); ++i)
-      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row) r[row] = current_.r[row] / problem_.scale[i];
+      for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row)
+        r[row] = current_.r[row] / problem_.scale[i];
     return isSqueezed(unscaled_, scratch_.weight, r);
   }
 
@@ -173,7 +183,8 @@ class FewSearch {
     evaluate(problem_, current_);
     takeShift();
     for (int n = 0; n < patienceOf(options).shift_updates; ++n) {
-      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, kInteriorPointSteps, equations_, scratch_, current_);
+      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, kInteriorPointSteps, equations_,
+                                       scratch_, current_);
       takeShift();
       if (finish(options)) return true;
     }
@@ -202,16 +213,24 @@ class FewSearch {
   double give_ = 0;
 };
 
-// Contacts that squeeze without end: as if contacts were soft. Those impulses never stay: they are as large as round-off lets them be.
-void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, EquationForm form, SolverScratch& scratch, double* r,
-                  double* u, SolveResult& result) {
+// Contacts that squeeze without end: as if contacts were soft. Those impulses never stay:
+// they are as large as round-off lets them be.
+void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, EquationForm form,
+                  SolverScratch& scratch, double* r, double* u, SolveResult& result) {
   const double start = errorOf(problem, r, scratch, u).residual;
   FewSearch search(problem, form, scratch, r, u, start);
   const int iterations = result.iterations;
   if (search.soften(options)) {
     search.write(r, u);
     const ContactError error = errorOf(problem, r, scratch, u);
-    result = {SolveMethod::kNotConverged, search.iterations(), error.residual, error.speed, result.start, false, result.give, true};
+    result = {SolveMethod::kNotConverged,
+              search.iterations(),
+              error.residual,
+              error.speed,
+              result.start,
+              false,
+              result.give,
+              true};
   } else {
     const double first = result.start;
     result = softenImpulses(problem, options, scratch, r, u);
@@ -221,8 +240,8 @@ void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, E
 }
 
 // A point between walls that nothing else solved: `r`, `u` and `result` are as they were unless this does.
-void tryPointProblem(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
-                     SolveResult& result) {
+void tryPointProblem(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r,
+                     double* u, SolveResult& result) {
   const double enough = std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
   if (!solvePointProblem(problem, enough, scratch, r, u, result.residual)) return;
   result.method = SolveMethod::kSweeps;
@@ -231,8 +250,8 @@ void tryPointProblem(const ContactProblem& problem, const SolverOptions& options
 
 }  // namespace
 
-void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch, double* r,
-                      double* u, SolveResult& result) {
+void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch,
+                      double* r, double* u, SolveResult& result) {
   PINCER_ASSERT(problem.contactCount() <= kFewContacts);
   const EquationForm form = chooseForm(problem, scratch);
   FewSearch search(problem, form, scratch, r, u, start);
@@ -253,7 +272,8 @@ void solveFewContacts(const ContactProblem& problem, const SolverOptions& option
   const ContactError error = errorOf(problem, r, scratch, u);
   result.residual = error.residual;
   result.error = error.speed;
-  result.converged = result.converged && error.residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
+  result.converged = result.converged &&
+                     error.residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
   if (!result.converged) result.method = SolveMethod::kNotConverged;
   if (!result.converged && isPointProblem(problem)) tryPointProblem(problem, options, scratch, r, u, result);
   if (isSqueezed(problem, scratch.weight, r)) yieldToWalls(problem, options, form, scratch, r, u, result);

@@ -1,9 +1,11 @@
 // few_contacts: up to kFewContacts contacts, to the tolerance, cheapest method first.
 //
-//   semi-smooth Newton (Alart-Curnier) -> the same with a proximal term -> interior point -> interior point with frozen shift, updated ->
-//   projected Gauss-Seidel with exact local solves -> best iterate, flagged.     Newton's method finishes what the others begin.
-// A point between walls, if all else failed, goes to point_problem.h. Decision 4 says why these stay: from no impulse at all they solve what the search doesn't
-// (contacts on which almost everything slides, of mass ratios of a thousand), to 1e-10.
+//   semi-smooth Newton (Alart-Curnier) -> the same with a proximal term -> interior point -> interior point with
+//   frozen shift, updated -> projected Gauss-Seidel with exact local solves -> best iterate, flagged.
+//   Newton's method finishes what the others begin.
+// A point between walls, if all else failed, goes to point_problem.h. Decision 4 says why these stay:
+// from no impulse at all they solve what the search doesn't (contacts on which almost everything slides,
+// of mass ratios of a thousand), to 1e-10.
 //
 // Never throws, allocates or prints; deterministic.
 #pragma once
@@ -16,8 +18,9 @@ struct SolverScratch;
 constexpr int kFewContacts = 60;    // beyond, what needs many factorisations costs milliseconds
 constexpr int kDenseContacts = 40;  // beyond, a dense matrix costs more than any graph of movers that fits
 
-// Solves `problem`, of at most kFewContacts, from `r` (in the cones) whose velocities `u` and residual `start` are; as solveContacts.
-void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch, double* r,
-                      double* u, SolveResult& result);
+// Solves `problem`, of at most kFewContacts, from `r` (in the cones) whose velocities `u`
+// and residual `start` are; as solveContacts.
+void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch,
+                      double* r, double* u, SolveResult& result);
 
 }  // namespace pincer::engine

@@ -7,15 +7,17 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kSmallestFriction = 1e-4;  // S holds 1 / mu: frictionless contacts get this here, Newton's method corrects them
-constexpr double kStepFraction = 0.99;      // of the way to the boundary
+// S holds 1 / mu: frictionless contacts get this here, Newton's method corrects them
+constexpr double kSmallestFriction = 1e-4;
+constexpr double kStepFraction = 0.99;  // of the way to the boundary
 constexpr double kSmallestStep = 1e-9;
 constexpr double kRegularisation = 1e-13;  // of the unit diagonal of W^
 constexpr double kSmoothing = 1e-15;       // of |u_T|, relative to the start's z
 
 class CentralPath {
  public:
-  CentralPath(const ScaledProblem& problem, const double* shift, ContactEquations& equations, SolverScratch& scratch, Iterate& it)
+  CentralPath(const ScaledProblem& problem, const double* shift, ContactEquations& equations, SolverScratch& scratch,
+              Iterate& it)
       : problem_(problem), shift_(shift), equations_(equations), scratch_(scratch), it_(it) {
     double** const vectors[] = {&x_, &z_, &dx_, &dz_, &lambda_, &target_, &defect_, &t_};
     double* memory = scratch.workspace.data();
@@ -24,7 +26,8 @@ class CentralPath {
       memory += problem.rowCount();
     }
     for (int row = 0; row < problem.rowCount(); ++row) size_ = std::max(size_, std::abs(problem.q[row]));
-    for (double* vector : {x_, z_, dx_, dz_}) std::fill(vector, vector + problem.rowCount(), 0.0);  // not whatever was there, times 0
+    // not whatever was there, times 0
+    for (double* vector : {x_, z_, dx_, dz_}) std::fill(vector, vector + problem.rowCount(), 0.0);
     for (int i = 0; i < problem.contactCount(); ++i) x_[normal(i)] = z_[normal(i)] = size_;
     update();
   }
@@ -64,13 +67,15 @@ class CentralPath {
   // Impulses, velocities and shift of the current x; what z still lacks.
   void update() {
     for (int i = 0; i < problem_.contactCount(); ++i)
-      for (int k = 0; k < problem_.rows(i); ++k) it_.r[problem_.firstRow(i) + k] = stretch(i, k) * x_[problem_.firstRow(i) + k];
+      for (int k = 0; k < problem_.rows(i); ++k)
+        it_.r[problem_.firstRow(i) + k] = stretch(i, k) * x_[problem_.firstRow(i) + k];
     evaluate(problem_, it_);
     for (int i = 0; i < problem_.contactCount(); ++i) {
       const int first = problem_.firstRow(i);
       const int rows = problem_.rows(i);
       const double* const u = it_.u + first;
-      const double slip = shift_ ? shift_[i] : std::sqrt(tangentNorm2(u, rows) + kSmoothing * kSmoothing * size_ * size_);
+      const double slip =
+          shift_ ? shift_[i] : std::sqrt(tangentNorm2(u, rows) + kSmoothing * kSmoothing * size_ * size_);
       setVector(t_ + first, rows, shift_ ? 0 : 1 / slip, u, 0);
       for (int k = 0; k < rows; ++k) defect_[first + k] = z_[first + k] - u[k];
       defect_[normal(i)] = z_[normal(i)] - u[kNormalRow] / friction(i) - slip;
@@ -80,7 +85,8 @@ class CentralPath {
   // x . z per contact, `length` along the direction.
   double meanGap(double length) const {
     double sum = 0;
-    for (int row = 0; row < problem_.rowCount(); ++row) sum += (x_[row] + length * dx_[row]) * (z_[row] + length * dz_[row]);
+    for (int row = 0; row < problem_.rowCount(); ++row)
+      sum += (x_[row] + length * dx_[row]) * (z_[row] + length * dz_[row]);
     return sum / problem_.contactCount();
   }
 
@@ -96,7 +102,8 @@ class CentralPath {
         column[k] = 1;
         N.apply(column, rows, column);
         N.apply(column, rows, column);
-        for (int l = 0; l < rows; ++l) E[kMaxContactRows * l + k] = (column[l] + (k == l ? kRegularisation : 0)) / stretch(i, k);
+        for (int l = 0; l < rows; ++l)
+          E[kMaxContactRows * l + k] = (column[l] + (k == l ? kRegularisation : 0)) / stretch(i, k);
         P[(kMaxContactRows + 1) * k] = stretch(i, k);
         if (k != kNormalRow) P[kMaxContactRows * kNormalRow + k] = t_[first + k];
       }
@@ -146,7 +153,8 @@ class CentralPath {
       const int first = problem_.firstRow(i), rows = problem_.rows(i);
       for (int k = 0; k < rows; ++k) dx_[first + k] /= stretch(i, k);
       respond(i, W_dr + first, dz_ + first);
-      length = std::min({length, stepToBoundary(x_ + first, dx_ + first, rows), stepToBoundary(z_ + first, dz_ + first, rows)});
+      length = std::min(
+          {length, stepToBoundary(x_ + first, dx_ + first, rows), stepToBoundary(z_ + first, dz_ + first, rows)});
     }
     return length;
   }
@@ -169,8 +177,8 @@ class CentralPath {
 
 }  // namespace
 
-int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations, ContactEquations& equations,
-                      SolverScratch& scratch, Iterate& it) {
+int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations,
+                      ContactEquations& equations, SolverScratch& scratch, Iterate& it) {
   CentralPath path(problem, shift, equations, scratch, it);
   for (int n = 0; n < iterations; ++n)
     if (it.residual <= tolerance || path.isSolved(tolerance) || !path.step()) return n;

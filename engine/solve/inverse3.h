@@ -4,7 +4,8 @@
 
 namespace pincer::engine {
 
-// out = A^-1, row-major with `stride` and `out_stride` per row; out may be A. False, with out undefined, if A is singular or not finite.
+// out = A^-1, row-major with `stride` and `out_stride` per row; out may be A. False, with out
+// undefined, if A is singular or not finite.
 template <int stride, int out_stride = stride>
 [[gnu::always_inline]] inline bool invert3(const double* A, double* out) {
   const double* const a = A;

@@ -1,22 +1,23 @@
-// linear: dense linear equations in the caller's memory. Eigen's decompositions of dynamic size allocate; the tick may not.
+// linear: dense linear equations in the caller's memory. Eigen's decompositions of
+// dynamic size allocate; the tick may not.
 //
 //   A x = b,   A n x n, column-major without gaps
 //
-// The order of every sum is fixed: the same bits with every compiler. Source: G. Golub, C. Van Loan, Matrix Computations, 4th ed. (2013),
-// sections 3.4 (LU with partial pivoting) and 4.1 (LDL^T).
+// The order of every sum is fixed: the same bits with every compiler. Source: G. Golub, C. Van Loan, Matrix
+// Computations, 4th ed. (2013), sections 3.4 (LU with partial pivoting) and 4.1 (LDL^T).
 #pragma once
 
 namespace pincer::engine {
 
-// P A = L U in place: U on and above the diagonal, L's multipliers below; row k was swapped with pivots[k] >= k. False if a pivot is 0 or
-// not finite.
+// P A = L U in place: U on and above the diagonal, L's multipliers below; row k was swapped with pivots[k]
+// >= k. False if a pivot is 0 or not finite.
 bool factoriseLu(double* A, int n, int* pivots);
 
 // b becomes the solution of A x = b, from A's factors.
 void solveLu(const double* LU, int n, const int* pivots, double* b);
 
-// L D L^T = A in place for symmetric positive definite A, half the work of LU; only A's lower triangle is read and written. False if a pivot
-// isn't positive.
+// L D L^T = A in place for symmetric positive definite A, half the work of LU; only A's lower triangle is read and
+// written. False if a pivot isn't positive.
 bool factoriseLdlt(double* A, int n);
 
 // b becomes the solution of A x = b, from A's factors.

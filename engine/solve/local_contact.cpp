@@ -8,7 +8,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kSingular = 1e-14;      // relative: what is added to A so that a direction without mobility has a solution
+constexpr double kSingular = 1e-14;  // relative: what is added to A so that a direction without mobility has a solution
 constexpr double kRootRoundOff = 1e-15;  // relative
 constexpr int kAlphaSteps = 60;
 
@@ -22,7 +22,8 @@ class TangentProblem {
     for (int k = 0; k < D; ++k) W_nT_[k] = W[kNormalRow + tangentRow(k) * stride];
     for (int k = 0; k < D; ++k) {
       b_[k] = q[tangentRow(k)] - W_nT_[k] * q_n_ * inverse_W_nn_;
-      for (int l = 0; l < D; ++l) A_[k][l] = W[tangentRow(k) + tangentRow(l) * stride] - W_nT_[k] * W_nT_[l] * inverse_W_nn_;
+      for (int l = 0; l < D; ++l)
+        A_[k][l] = W[tangentRow(k) + tangentRow(l) * stride] - W_nT_[k] * W_nT_[l] * inverse_W_nn_;
       trace_ += A_[k][k];
     }
   }
@@ -108,7 +109,8 @@ double between(double low, double high, double alpha, double magnitude) {
   return low > 0 ? std::sqrt(low) * std::sqrt(high) : high / kFactor;
 }
 
-// Leaves `problem` at the alpha > 0 for which the impulse is on the cone's surface. f is nearly a line: three or four steps from the first guess. Returns how many.
+// Leaves `problem` at the alpha > 0 for which the impulse is on the cone's surface. f is nearly a line: three or four
+// steps from the first guess. Returns how many.
 template <int D>
 int findSlide(TangentProblem<D>& problem) {
   double low = 0, high = std::numeric_limits<double>::infinity();

@@ -2,13 +2,15 @@
 //
 //   u = W r + q;   take-off: q_n >= 0, r = 0.   Otherwise u_n = 0, which leaves  u_T = A r_T + b,
 //   A = W_TT - W_Tn W_nT / W_nn,   b = q_T - W_Tn q_n / W_nn,   r_n = -(q_n + W_nT r_T) / W_nn
-//   stick: r_T = -A^-1 b if |r_T| <= mu r_n.   slide: u_T = -alpha r_T, i. e. r_T = -(A + alpha I)^-1 b with |r_T| = mu r_n: one unknown, alpha > 0
+//   stick: r_T = -A^-1 b if |r_T| <= mu r_n.   slide: u_T = -alpha r_T, i. e. r_T = -(A + alpha I)^-1 b
+//                                              with |r_T| = mu r_n: one unknown, alpha > 0
 //
-// r_T -> 0 and r_n -> -q_n / W_nn > 0 as alpha -> infinity, so that the slide case always has a root. It is found on mu r_n / |r_T| = 1, nearly
-// linear in alpha (the secular equation of trust-region methods: J. More, D. Sorensen, SIAM J. Sci. Stat. Comput. 4 (1983) 553-572),
-// by Newton's method inside a bracket.
+// r_T -> 0 and r_n -> -q_n / W_nn > 0 as alpha -> infinity, so that the slide case always has a root. It is found on mu
+// r_n / |r_T| = 1, nearly linear in alpha (the secular equation of trust-region methods: J. More, D. Sorensen, SIAM J.
+// Sci. Stat. Comput. 4 (1983) 553-572), by Newton's method inside a bracket.
 //
-// Where W is isotropic, as where spheres touch, A is a multiple of the identity: what slides has the direction of what would stick.
+// Where W is isotropic, as where spheres touch, A is a multiple of the identity: what
+// slides has the direction of what would stick.
 #pragma once
 #include <cmath>
 
@@ -19,7 +21,8 @@ namespace pincer::engine {
 // True if, of three rows, all directions along the surface are alike and the normal is apart from them.
 bool isIsotropic(const double* W, int stride);
 
-// r = -W^-1 q of such a contact, which would stop it, becomes its solution. Returns how much friction was missing of |r_T|, if it pushes.
+// r = -W^-1 q of such a contact, which would stop it, becomes its solution. Returns how much
+// friction was missing of |r_T|, if it pushes.
 [[gnu::always_inline]] inline double limitFriction(double mu, double* r) {
   const double most = mu * r[kNormalRow], r_T2 = r[0] * r[0] + r[1] * r[1];
   if (!(r[kNormalRow] > 0)) {

@@ -1,9 +1,10 @@
-// lorentz: the Lorentz cone L = { v : |v_T| <= v_n } and its Jordan algebra, on contact vectors (t1, t2, n[, tau[, rho1, rho2]]).
+// lorentz: the Lorentz cone L = { v : |v_T| <= v_n } and its Jordan algebra, on contact
+// vectors (t1, t2, n[, tau[, rho1, rho2]]).
 //
 //   a o b = (a_n b_T + b_n a_T, a . b),   e = (0, 0, 1[, 0 ..]),   det v = v_n^2 - |v_T|^2
 //
-// Source: F. Alizadeh, D. Goldfarb, "Second-order cone programming", Math. Program. 95 (2003) 3-51, section 4; Nesterov-Todd scaling:
-// L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010).
+// Source: F. Alizadeh, D. Goldfarb, "Second-order cone programming", Math. Program. 95 (2003) 3-51, section 4;
+// Nesterov-Todd scaling: L. Vandenberghe, "The CVXOPT linear and quadratic cone program solvers" (2010).
 #pragma once
 #include <algorithm>
 #include <cmath>

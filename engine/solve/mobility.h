@@ -8,7 +8,8 @@
 
 namespace pincer::engine {
 
-// Two sums at once, of what is even and what is odd: left to itself the compiler does one after the other. (`auto` would forget the alignment.)
+// Two sums at once, of what is even and what is odd: left to itself the compiler does one after the
+// other. (`auto` would forget the alignment.)
 using DoublePair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
 [[gnu::always_inline]] inline DoublePair dotPair6(const double* a, const double* b) {
   const DoublePair *const x = reinterpret_cast<const DoublePair*>(a), *const y = reinterpret_cast<const DoublePair*>(b);
@@ -20,7 +21,9 @@ using DoublePair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = dou
 }
 
 // The same where the last three are 0.
-[[gnu::always_inline]] inline double dot3(const double* a, const double* b) { return (a[0] * b[0] + a[2] * b[2]) + a[1] * b[1]; }
+[[gnu::always_inline]] inline double dot3(const double* a, const double* b) {
+  return (a[0] * b[0] + a[2] * b[2]) + a[1] * b[1];
+}
 
 // y += A_i^T r_i
 inline void addImpulse(std::span<const ContactSide> sides, int rows, const double* r, double* y) {

@@ -40,7 +40,8 @@ bool findPlaces(const ContactProblem& problem, SolverScratch& scratch) {
 
 // H += A^T GA of so many rows
 template <class Rows>
-[[gnu::always_inline]] inline void addProduct(Rows rows, const ContactSide& a, const DoublePair (&GA)[kMaxContactRows][3], double* H) {
+[[gnu::always_inline]] inline void addProduct(Rows rows, const ContactSide& a,
+                                              const DoublePair (&GA)[kMaxContactRows][3], double* H) {
   for (int k = 0; k < kMoverFreedoms; ++k, H += kMoverFreedoms) {
     DoublePair* const out = reinterpret_cast<DoublePair*>(H);
     DoublePair h0 = out[0], h1 = out[1], h2 = out[2];

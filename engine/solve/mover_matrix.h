@@ -1,12 +1,14 @@
 // mover_matrix: I + A^T G A in the movers' space, G a block per contact, and its factors.
 //
-// 6 x 6 blocks, one per mover and pair of movers that share a contact: linear in the contacts, whatever the number of pairs of them that see each other.
+// 6 x 6 blocks, one per mover and pair of movers that share a contact: linear in the contacts, whatever the
+// number of pairs of them that see each other.
 #pragma once
 #include "pincer/engine/solve/solver_scratch.h"
 
 namespace pincer::engine {
 
-// Products of blocks in a factorisation, per contact, beyond which sweeps over the contacts are cheaper: where a hundred balls touch.
+// Products of blocks in a factorisation, per contact, beyond which sweeps over the contacts
+// are cheaper: where a hundred balls touch.
 constexpr int kProductsPerContact = 12;
 
 class MoverMatrix {

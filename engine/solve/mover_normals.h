@@ -98,7 +98,8 @@ class MoverNormals {
     for (int p = 0; p < points_; ++p) {
       const double* const y_p = y + kMoverFreedoms * movers_.points()[p];
       forBodiesOf(p, [&](int first, const Coupling3& C) {
-        for (int j = 0; j < kMoverFreedoms; ++j) b[first + j] -= (C[0][j] * y_p[0] + C[1][j] * y_p[1]) + C[2][j] * y_p[2];
+        for (int j = 0; j < kMoverFreedoms; ++j)
+          b[first + j] -= (C[0][j] * y_p[0] + C[1][j] * y_p[1]) + C[2][j] * y_p[2];
       });
     }
     if (size_ > 0) solveLdlt(body_, size_, b);
@@ -136,7 +137,8 @@ class MoverNormals {
   template <class Rows>
   void addCoupling(const ContactSide& point, const ContactSide& body, Rows rows) {
     const int p = movers_.numberOf(point), b = movers_.numberOf(body);
-    for (int k = 0; k < 3 && !touches_[p][b]; ++k) std::fill(coupling_[p][b][k], coupling_[p][b][k] + kMoverFreedoms, 0.0);
+    for (int k = 0; k < 3 && !touches_[p][b]; ++k)
+      std::fill(coupling_[p][b][k], coupling_[p][b][k] + kMoverFreedoms, 0.0);
     touches_[p][b] = true;
     for (int k = 0; k < 3; ++k) addRows(point, k, body, 0, rows, coupling_[p][b][k]);
   }
@@ -144,7 +146,8 @@ class MoverNormals {
   // The lower half is all that is read.
   template <class Rows>
   void addBodies(const ContactSide& row, const ContactSide& column, Rows rows) {
-    const int first_row = kMoverFreedoms * movers_.numberOf(row), first_column = kMoverFreedoms * movers_.numberOf(column);
+    const int first_row = kMoverFreedoms * movers_.numberOf(row),
+              first_column = kMoverFreedoms * movers_.numberOf(column);
     if (first_row < first_column) return;
     for (int k = 0; k < kMoverFreedoms; ++k) {
       const int from = first_row == first_column ? k / 2 : 0;
@@ -154,7 +157,8 @@ class MoverNormals {
 
   // out_j += sum over the rows of x's column k times y's column j, pairs of j from `from` on
   template <class Rows>
-  [[gnu::always_inline]] static void addRows(const ContactSide& x, int k, const ContactSide& y, int from, Rows rows, double* out) {
+  [[gnu::always_inline]] static void addRows(const ContactSide& x, int k, const ContactSide& y, int from, Rows rows,
+                                             double* out) {
     DoublePair* const sums = reinterpret_cast<DoublePair*>(out);
     for (int pair = from; pair < kMoverFreedoms / 2; ++pair) {
       DoublePair sum = sums[pair];
@@ -213,7 +217,8 @@ class MoverNormals {
   double point_[kMostStuckPoints][9];
   bool touches_[kMostStuckPoints][kMostStuckBodies];
   alignas(16) Coupling3 coupling_[kMostStuckPoints][kMostStuckBodies];
-  alignas(16) double body_[kMoverFreedoms * kMostStuckBodies * kMoverFreedoms * kMostStuckBodies];  // as linear.h has it
+  // as linear.h has it
+  alignas(16) double body_[kMoverFreedoms * kMostStuckBodies * kMoverFreedoms * kMostStuckBodies];
 };
 
 }  // namespace pincer::engine

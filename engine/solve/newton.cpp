@@ -10,22 +10,26 @@ namespace pincer::engine {
 namespace {
 
 constexpr double kContactsEpsilon = 1e-11;  // far above round-off, far below the W^ of one contact (1)
-constexpr double kMoversEpsilon = 1e-6;     // redundant contacts share their load by the round-off of their gaps over this
-constexpr double kCorrected = 1e-8;         // of Newton's equations: what epsilon may leave of them
+constexpr double kMoversEpsilon = 1e-6;  // redundant contacts share their load by the round-off of their gaps over this
+constexpr double kCorrected = 1e-8;      // of Newton's equations: what epsilon may leave of them
 constexpr int kMostCorrections = 3;
-constexpr double kProximalEpsilon = 1e-3;  // small enough that a few rounds do, large enough for the equations to be tame
-constexpr double kRoundDecrease = 1e-8;    // of |Phi|^2 in a round
+// small enough that a few rounds do, large enough for the equations to be tame
+constexpr double kProximalEpsilon = 1e-3;
+constexpr double kRoundDecrease = 1e-8;  // of |Phi|^2 in a round
 constexpr int kStepsPerRound = 8;
-constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;  // of contacts that give way: as long as a round isn't solved, more
+// of contacts that give way: as long as a round isn't solved, more
+constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;
 constexpr int kStepsPerGivingRound = 12;
-constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};  // of contacts that are soft: the first with which Newton's method gets there
-constexpr double kFadesStill = 0.5;                    // of the give of the round before
-constexpr int kPatience = 5;                  // steps without a residual half as large as the best before, after which it won't come
-constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
+// of contacts that are soft: the first with which Newton's method gets there
+constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
+constexpr double kFadesStill = 0.5;  // of the give of the round before
+constexpr int kPatience = 5;  // steps without a residual half as large as the best before, after which it won't come
+constexpr int kTrials = 6;    // step lengths 1, 1/2, .. 1/32
 constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2
 
 // Phi of one contact, y, and how the contact acts.
-[[gnu::always_inline]] inline ContactMode alartCurnier(const double* r, const double* u, int rows, double mu, double* y, double* phi) {
+[[gnu::always_inline]] inline ContactMode alartCurnier(const double* r, const double* u, int rows, double mu, double* y,
+                                                       double* phi) {
   for (int k = 0; k < rows; ++k) y[k] = r[k] - u[k];
   const ContactMode mode = contactMode(y, rows, mu);
   if (mode == ContactMode::kOpen) {
@@ -75,9 +79,17 @@ double largestOf(const double* x, int m) {
 // Newton's equations at one iterate.
 class NewtonStep {
  public:
-  NewtonStep(const ScaledProblem& problem, const Iterate& it, const Centre& centre, ContactEquations& equations, SolverScratch& scratch)
-      : problem_(problem), it_(it), centre_(centre), equations_(equations), scratch_(scratch), dr_(scratch.step.data()) {
-    epsilon_ = centre.r ? centre.epsilon : equations.form() == EquationForm::kMovers ? kMoversEpsilon : kContactsEpsilon;
+  NewtonStep(const ScaledProblem& problem, const Iterate& it, const Centre& centre, ContactEquations& equations,
+             SolverScratch& scratch)
+      : problem_(problem),
+        it_(it),
+        centre_(centre),
+        equations_(equations),
+        scratch_(scratch),
+        dr_(scratch.step.data()) {
+    epsilon_ = centre.r                                    ? centre.epsilon
+               : equations.form() == EquationForm::kMovers ? kMoversEpsilon
+                                                           : kContactsEpsilon;
   }
 
   // Solves for dr; false if the equations are singular in spite of epsilon.
@@ -165,10 +177,12 @@ class NewtonStep {
   double epsilon_;
 };
 
-// Halves the step until |Phi| falls enough. If it never does the shortest step is taken all the same: that leaves the cycles and the corners of
-// |Phi| where insisting on descent gets stuck (of 1000 grasps with 2-10 fingers from a cold start, 5 % fail instead of 8 %).
-void searchLine(const ScaledProblem& problem, const Centre& centre, const NewtonStep& newton, double tolerance, SolverScratch& scratch,
-                const Iterate& current, Iterate& trial) {
+// Halves the step until |Phi| falls enough. If it never does the shortest step is taken all the same:
+// that leaves the cycles and the corners of
+// |Phi| where insisting on descent gets stuck (of 1000 grasps with 2-10 fingers
+// from a cold start, 5 % fail instead of 8 %).
+void searchLine(const ScaledProblem& problem, const Centre& centre, const NewtonStep& newton, double tolerance,
+                SolverScratch& scratch, const Iterate& current, Iterate& trial) {
   const auto attempt = [&](double t) {
     spend(costOfLook(problem), scratch);
     newton.step(t, trial.r);
@@ -187,8 +201,8 @@ void searchLine(const ScaledProblem& problem, const Centre& centre, const Newton
 
 }  // namespace
 
-int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations, SolverScratch& scratch,
-                  Iterate& current, Iterate& trial) {
+int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations,
+                  SolverScratch& scratch, Iterate& current, Iterate& trial) {
   double best = current.residual;
   int patience = kPatience;
   for (int n = 0; n < iterations; ++n) {
@@ -207,8 +221,8 @@ int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations
   return iterations;
 }
 
-int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations, SolverScratch& scratch,
-                      Iterate& current, Iterate& trial) {
+int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
+                      SolverScratch& scratch, Iterate& current, Iterate& trial) {
   double* const r_c = scratch.shift_centre.data();
   double best = current.residual;
   int steps = 0, patience = kPatience;
@@ -240,13 +254,14 @@ namespace {
 // True if `current` is the answer with u + epsilon (r - r_c); `u` is working memory.
 bool isSolved(const ScaledProblem& problem, const Centre& centre, double tolerance, const Iterate& current, double* u) {
   Iterate given{current.r, u};
-  for (int row = 0; row < problem.rowCount(); ++row) u[row] = current.u[row] + centre.epsilon * (current.r[row] - centre.r[row]);
+  for (int row = 0; row < problem.rowCount(); ++row)
+    u[row] = current.u[row] + centre.epsilon * (current.r[row] - centre.r[row]);
   judge(problem, given);
   return given.residual <= tolerance;
 }
 
-bool solveRound(const ScaledProblem& problem, const Centre& centre, double tolerance, ContactEquations& equations, SolverScratch& scratch,
-                Iterate& current, Iterate& trial, int& steps) {
+bool solveRound(const ScaledProblem& problem, const Centre& centre, double tolerance, ContactEquations& equations,
+                SolverScratch& scratch, Iterate& current, Iterate& trial, int& steps) {
   for (int n = 0; n < kStepsPerGivingRound; ++n) {
     NewtonStep newton(problem, current, centre, equations, scratch);
     if (!newton.solve()) return false;
@@ -281,8 +296,8 @@ void addGive(const ScaledProblem& problem, const SolverScratch& scratch, Iterate
 
 }  // namespace
 
-int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations, SolverScratch& scratch,
-                  Iterate& current, Iterate& trial, double& largest) {
+int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
+                  SolverScratch& scratch, Iterate& current, Iterate& trial, double& largest) {
   double* const r_c = scratch.shift_centre.data();
   double epsilon = kGivingEpsilon, give = std::numeric_limits<double>::infinity();
   int steps = 0;
@@ -305,8 +320,8 @@ int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, Co
   return steps;
 }
 
-bool iterateSoftly(const ScaledProblem& problem, double tolerance, ContactEquations& equations, SolverScratch& scratch, Iterate& current,
-                   Iterate& trial, int& steps) {
+bool iterateSoftly(const ScaledProblem& problem, double tolerance, ContactEquations& equations, SolverScratch& scratch,
+                   Iterate& current, Iterate& trial, int& steps) {
   double* const r_c = scratch.shift_centre.data();
   std::fill(r_c, r_c + problem.rowCount(), 0.0);
   for (const double epsilon : kSoftEpsilons) {

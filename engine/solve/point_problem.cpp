@@ -12,8 +12,8 @@ namespace pincer::engine {
 namespace {
 
 constexpr int kMostWalls = 4;
-constexpr int kSteps = 48;                  // to each side of where a wall's slip is least, each
-constexpr double kGrowth = 2;               // times as long as the one before: from a tenth of its width there over fourteen decades
+constexpr int kSteps = 48;     // to each side of where a wall's slip is least, each
+constexpr double kGrowth = 2;  // times as long as the one before: from a tenth of its width there over fourteen decades
 constexpr double kNarrow = 1e-12;           // of y_0: walls that agree have no width
 constexpr int kHalvings = 100;              // at most: until there is no number in between
 constexpr int kTurnSteps = 20;              // of a search for two roots between two steps
@@ -46,8 +46,8 @@ struct Wall {
   Vec3 push(const Vec3& impulse) const { return a + impulse[0] * row[0] + impulse[1] * row[1]; }
 };
 
-// Two walls, and where the point may be without leaving either: s = s_0 + sigma, s_0 where the slip of that wall is least which is quicker to turn, so that
-// there is a number for each direction of friction.
+// Two walls, and where the point may be without leaving either: s = s_0 + sigma, s_0 where the slip of that wall is
+// least which is quicker to turn, so that there is a number for each direction of friction.
 class Groove {
  public:
   Groove(const Wall& x, const Wall& y) : wall_{&x, &y} {
@@ -55,7 +55,8 @@ class Groove {
     const double length = across.norm();
     if (!(length > kFlat * a.norm() * b.norm())) return;
     e_ = across / length;
-    y_0_ = (-x.q[kNormalRow] * b.cross(e_) - y.q[kNormalRow] * e_.cross(a)) / length;  // a . y_0 = -q_0n, b . y_0 = -q_1n, e . y_0 = 0
+    // a . y_0 = -q_0n, b . y_0 = -q_1n, e . y_0 = 0
+    y_0_ = (-x.q[kNormalRow] * b.cross(e_) - y.q[kNormalRow] * e_.cross(a)) / length;
     for (int i = 0; i < 2; ++i) setSlip(i);
     const double s_0 = slip_[std::abs(slip_[0].width) <= std::abs(slip_[1].width) ? 0 : 1].least;
     narrow_ = kNarrow * (y_0_.norm() + std::abs(s_0));
@@ -140,8 +141,8 @@ class Groove {
 
   // True if f comes nearest to 0 in the middle, without a change of its sign.
   static bool turnsBack(const Point& x, const Point& y, const Point& z) {
-    return x.sigma < y.sigma && y.sigma < z.sigma && (x.f < 0) == (y.f < 0) && (y.f < 0) == (z.f < 0) && std::abs(y.f) < std::abs(x.f) &&
-           std::abs(y.f) <= std::abs(z.f);
+    return x.sigma < y.sigma && y.sigma < z.sigma && (x.f < 0) == (y.f < 0) && (y.f < 0) == (z.f < 0) &&
+           std::abs(y.f) < std::abs(x.f) && std::abs(y.f) <= std::abs(z.f);
   }
   // Follows f to where it is nearest to 0, in case that it is beyond.
   template <class Act>
@@ -164,7 +165,8 @@ class Groove {
     return false;
   }
 
-  // rho_i by least squares, of which nothing is left over at a root: f also changes its sign where a wall sticks, and jumps. The residual of the law judges.
+  // rho_i by least squares, of which nothing is left over at a root: f also changes its sign where a wall sticks,
+  // and jumps. The residual of the law judges.
   bool impulses(double sigma, Vec3 (&r)[2]) const {
     const Vec3 g = push(0, sigma), h = push(1, sigma), y = y_0_ + sigma * e_, normal = g.cross(h);
     const double n2 = normal.squaredNorm(), rho[2] = {y.cross(h).dot(normal) / n2, g.cross(y).dot(normal) / n2};
@@ -227,7 +229,9 @@ class PointSearch {
         if (!spend(kPerGroove, scratch_)) return false;
         const Wall walls[] = {wall(i), wall(j)};
         const Groove groove(walls[0], walls[1]);
-        if (groove.isSound() && groove.untilRoot([&](const Vec3& r_i, const Vec3& r_j) { return isAnswer({{i, r_i}, {j, r_j}}); }))
+        if (groove.isSound() && groove.untilRoot([&](const Vec3& r_i, const Vec3& r_j) {
+              return isAnswer({{i, r_i}, {j, r_j}});
+            }))
           return true;
       }
     }
@@ -291,7 +295,8 @@ bool isPointProblem(const ContactProblem& problem) {
   return true;
 }
 
-bool solvePointProblem(const ContactProblem& problem, double enough, SolverScratch& scratch, double* r, double* u, double& residual) {
+bool solvePointProblem(const ContactProblem& problem, double enough, SolverScratch& scratch, double* r, double* u,
+                       double& residual) {
   double before[kMostWalls * kTorsionRow];
   const int m = problem.rowCount();
   std::copy(r, r + m, before);

@@ -112,7 +112,8 @@ bool ProximalRound::step() {
     const double inverse_e = inverseE(i);
     double x[kMaxContactRows] = {};
     for (int k = 0; k < rows; ++k)
-      x[k] = scratch_.centre[static_cast<std::size_t>(first + k)] - scratch_.u[static_cast<std::size_t>(first + k)] * inverse_e;
+      x[k] = scratch_.centre[static_cast<std::size_t>(first + k)] -
+             scratch_.u[static_cast<std::size_t>(first + k)] * inverse_e;
     x[kNormalRow] -= frozenShift(i) * inverse_e;
     shift_ == Shift::kFrozen ? addFrozenToMatrix(i, rows, x) : addToMatrix(i, rows, x);
   }
@@ -132,13 +133,14 @@ bool ProximalRound::step() {
 }
 
 void ProximalRound::move(double t) {
-  for (int j = 0; j < size(); ++j) scratch_.y[static_cast<std::size_t>(j)] += t * scratch_.direction[static_cast<std::size_t>(j)];
+  for (int j = 0; j < size(); ++j)
+    scratch_.y[static_cast<std::size_t>(j)] += t * scratch_.direction[static_cast<std::size_t>(j)];
   for (int row = 0; row < problem_.rowCount(); ++row)
     scratch_.u[static_cast<std::size_t>(row)] += t * scratch_.change[static_cast<std::size_t>(row)];
 }
 
-// Halves the step until the gradient falls enough. If it never does the shortest step is taken all the same: that leaves the cycles and corners where
-// insisting on descent gets stuck.
+// Halves the step until the gradient falls enough. If it never does the shortest step is taken all the same: that
+// leaves the cycles and corners where insisting on descent gets stuck.
 double ProximalRound::searchLine(double merit) {
   double t = 1, taken = 0, next = merit;
   for (int trial = 0; trial < kRoundTrials; ++trial, t *= 0.5) {
@@ -153,11 +155,13 @@ double ProximalRound::searchLine(double merit) {
 // Of the energy along the direction.
 double ProximalRound::slope() const {
   double sum = 0;
-  for (int j = 0; j < size(); ++j) sum -= scratch_.gradient[static_cast<std::size_t>(j)] * scratch_.direction[static_cast<std::size_t>(j)];
+  for (int j = 0; j < size(); ++j)
+    sum -= scratch_.gradient[static_cast<std::size_t>(j)] * scratch_.direction[static_cast<std::size_t>(j)];
   return sum;
 }
 
-// To where the energy is nearly least along the direction: by doubling until it rises, then by false position, kept away from the ends.
+// To where the energy is nearly least along the direction: by doubling until it rises, then by
+// false position, kept away from the ends.
 double ProximalRound::minimise() {
   const double steep = slope(), flat = kNearlyFlat * std::abs(steep);
   double low = 0, low_slope = steep, high = 1, taken = 0, merit = 0;

@@ -57,10 +57,12 @@ ContactError respondedError(const ContactProblem& problem, const double* r, cons
   WorstResidual worst;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
-    withForm(problem, i,
-             [&](auto rows, const auto& form) { velocityOf(form, rows, problem.q.data() + first, scratch.y.data(), u + first); });
+    withForm(problem, i, [&](auto rows, const auto& form) {
+      velocityOf(form, rows, problem.q.data() + first, scratch.y.data(), u + first);
+    });
     const double w = scratch.weight[static_cast<std::size_t>(i)];
-    worst.add(naturalMap2(r + first, u + first, problem.rows(i), problem.friction(i), w), u[first + kNormalRow], w * r[first + kNormalRow]);
+    worst.add(naturalMap2(r + first, u + first, problem.rows(i), problem.friction(i), w), u[first + kNormalRow],
+              w * r[first + kNormalRow]);
   }
   return worst.relativeTo(referenceSpeed(problem));
 }

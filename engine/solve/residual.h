@@ -1,10 +1,12 @@
 // residual: how far impulses are from obeying the contact law, in a way that nothing that isn't finite can pass.
 //
-//   error     max_i w_i |r_i - P_K(r_i - u~_i / w_i)|   [m/s],   u~_i = u_i + mu_i |u_iT| e_n,   w_i  mean of W_ii's diagonal
+//   error     max_i w_i |r_i - P_K(r_i - u~_i / w_i)|   [m/s],   u~_i = u_i + mu_i |u_iT| e_n,
+//                                                                w_i  mean of W_ii's diagonal
 //   residual  error / max(|q|_inf, kVelocityFloor, 1e-4 max_i w_i r_in)   [-]
 //
-// The last term of the maximum speaks up only where W r cancels to less than 1e-4 of itself (mass ratios above 1e4), and keeps a tolerance of 1e-10
-// above the round-off of that sum. Both are infinite if anything isn't finite (a NaN never passes).
+// The last term of the maximum speaks up only where W r cancels to less than 1e-4 of itself (mass ratios
+// above 1e4), and keeps a tolerance of 1e-10 above the round-off of that sum. Both are infinite if
+// anything isn't finite (a NaN never passes).
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,7 +17,8 @@
 
 namespace pincer::engine {
 
-// The slowest motion that counts as motion; residuals are relative to the speeds of the problem, but never to less [m/s].
+// The slowest motion that counts as motion; residuals are relative to the speeds
+// of the problem, but never to less [m/s].
 constexpr double kVelocityFloor = 1e-6;
 
 struct ContactError {
@@ -71,8 +74,8 @@ double referenceSpeed(const ContactProblem& problem);
 // Of the tolerance: what a strict problem asks of its warm start.
 constexpr double kStrictness = 1e-4;
 
-// The residual at which a warm start counts as exact, for a problem of speeds of order `speed` [m/s]: what the round-off of gaps asks for, 5e-17 m of
-// which a tick of 1 ms undoes a fifth, has no impulses that last.
+// The residual at which a warm start counts as exact, for a problem of speeds of order `speed` [m/s]: what the
+// round-off of gaps asks for, 5e-17 m of which a tick of 1 ms undoes a fifth, has no impulses that last.
 inline double exactResidual(double tolerance, double speed) {
   constexpr double kGapNoise = 1e-14;  // [m/s]
   return std::max(kStrictness * tolerance, std::min(tolerance, kGapNoise / speed));

@@ -37,7 +37,8 @@ bool makeRound(std::span<const ContactSide> sides, RoundContact& c) {
   const ContactSide& moving = sides[static_cast<std::size_t>(first)];
   if (moving.mover < 0) return false;
   const double* const n = moving.A[kNormalRow];
-  if (dot3(n + 3, n + 3) > kRound * dot3(n, n)) return false;  // its line misses the centre: so do most that aren't round
+  // its line misses the centre: so do most that aren't round
+  if (dot3(n + 3, n + 3) > kRound * dot3(n, n)) return false;
   const double inverse = 1 / std::sqrt(dot3(moving.A[kNormalRow], moving.A[kNormalRow]));
   for (int k = 0; k < kTorsionRow; ++k) {
     for (int j = 0; j < 3; ++j) c.R[k][j] = inverse * moving.A[k][j];

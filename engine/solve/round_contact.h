@@ -1,11 +1,13 @@
-// round_contact: a contact whose points lie on its bodies' normals through their centres, as between balls: 16 numbers, two lines of the cache, say what A's
-// 36 do.
+// round_contact: a contact whose points lie on its bodies' normals through their centres, as between balls: 16 numbers,
+// two lines of the cache, say what A's 36 do.
 //
-//   u = A y + q = R^T (dv + dw x n) + q,   dv = sum_b linear_b y_b(1..3),   dw = sum_b turn_b y_b(4..6);     A^T r:  f = R r,  (linear_b f, turn_b n x f)
+//   u = A y + q = R^T (dv + dw x n) + q,   dv = sum_b linear_b y_b(1..3),   dw = sum_b turn_b y_b(4..6);     A^T r:
+//                                                                           f = R r,  (linear_b f, turn_b n x f)
 //
 //   R       columns (t1, t2, n), all three turned round where only the second body moves
 //   linear  M_b^-1/2, with its sign [kg^-1/2];   turn  arm times I_b^-1/2, likewise
-// To round-off the same as A, along n without what round-off makes of n x n. For heaps, whose sweeps wait for memory (sweeps.h).
+// To round-off the same as A, along n without what round-off makes of n x n. For heaps,
+// whose sweeps wait for memory (sweeps.h).
 #pragma once
 #include <vector>
 
@@ -13,7 +15,8 @@
 
 namespace pincer::engine {
 
-// Fills `round`, as large as the contacts at least; what isn't round is marked so. If most are, `problem` looks there from now on.
+// Fills `round`, as large as the contacts at least; what isn't round is marked so. If
+// most are, `problem` looks there from now on.
 void findRoundContacts(std::vector<RoundContact>& round, ContactProblem& problem);
 
 // velocityOf and the like of mobility.h, of a contact that is round.
@@ -27,7 +30,8 @@ void findRoundContacts(std::vector<RoundContact>& round, ContactProblem& problem
   const double* const n = c.R[kNormalRow];
   const double slip[3] = {dv[0] + (dw[1] * n[2] - dw[2] * n[1]), dv[1] + (dw[2] * n[0] - dw[0] * n[2]),
                           dv[2] + (dw[0] * n[1] - dw[1] * n[0])};
-  for (int k = 0; k < kNormalRow; ++k) u[k] = q[k] + ((c.R[k][0] * slip[0] + c.R[k][1] * slip[1]) + c.R[k][2] * slip[2]);
+  for (int k = 0; k < kNormalRow; ++k)
+    u[k] = q[k] + ((c.R[k][0] * slip[0] + c.R[k][1] * slip[1]) + c.R[k][2] * slip[2]);
   u[kNormalRow] = q[kNormalRow] + ((n[0] * dv[0] + n[1] * dv[1]) + n[2] * dv[2]);
 }
 inline double normalVelocityOf(const RoundContact& c, double q_n, const double* y) {
@@ -54,7 +58,8 @@ inline double normalVelocityOf(const RoundContact& c, double q_n, const double* 
   }
 }
 
-// Calls act with the number of rows, as withRows does, and with what stands for contact i of a problem: its RoundContact, or its ContactSides.
+// Calls act with the number of rows, as withRows does, and with what stands for contact i of a
+// problem: its RoundContact, or its ContactSides.
 template <class Problem, class Act>
 [[gnu::always_inline]] inline void withForm(const Problem& problem, int i, const Act& act) {
   const auto place = static_cast<std::size_t>(i);

@@ -59,7 +59,8 @@ ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScra
   const int n = problem.contactCount();
   for (int i = 0; i < n; ++i) {
     const double scale = scratch.scale[i] = std::sqrt(scratch.weight[static_cast<std::size_t>(i)]);
-    for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row) scratch.q[row] = problem.q.data()[row] / scale;
+    for (int row = problem.firstRow(i); row < problem.firstRow(i + 1); ++row)
+      scratch.q[row] = problem.q.data()[row] / scale;
   }
   ScaledProblem scaled{problem.first_row,
                        problem.mu,
@@ -110,7 +111,8 @@ void judge(const ScaledProblem& problem, Iterate& it) {
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i);
     const double* const u_i = it.u + first;
-    const double error2 = naturalMap2(it.r + first, u_i, problem.rows(i), problem.friction(i), 1);  // in scaled variables w_i is 1
+    // in scaled variables w_i is 1
+    const double error2 = naturalMap2(it.r + first, u_i, problem.rows(i), problem.friction(i), 1);
     const double scale = problem.scale[i];
     worst.add(error2 * scale * scale, u_i[kNormalRow], scale * it.r[first + kNormalRow]);
   }

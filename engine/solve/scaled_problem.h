@@ -1,9 +1,11 @@
 // scaled_problem: a ContactProblem in variables in which every contact weighs the same.
 //
-//   r^ = s r,   u^ = u / s,   A^_i = A_i / s_i,   W^ = A^ A^^T,   q^ = q / s,   s_i = sqrt(w_i),   w_i = mean of W_ii's diagonal
+//   r^ = s r,   u^ = u / s,   A^_i = A_i / s_i,   W^ = A^ A^^T,   q^ = q / s,   s_i = sqrt(w_i),
+//                                                                 w_i = mean of W_ii's diagonal
 //
-// s is one number per contact, so the cones and the law are unchanged; r^ and u^ are both in sqrt(J). The diagonal of W^ is about 1, whatever
-// the masses, so Alart-Curnier's rho, the line search's merit and the regularisation need no tuning.
+// s is one number per contact, so the cones and the law are unchanged; r^ and u^ are both in
+// sqrt(J). The diagonal of W^ is about 1, whatever the masses, so Alart-Curnier's rho, the line
+// search's merit and the regularisation need no tuning.
 #pragma once
 #include "pincer/engine/solve/contact_problem.h"
 #include "pincer/engine/solve/solver_scratch.h"
@@ -14,11 +16,12 @@ struct ScaledProblem {
   std::span<const int> first_row;
   std::span<const double> mu;
   std::span<const ContactSides> sides;  // A^ [-]; with W^, only once scaleSides has been called
-  const double* W = nullptr;            // W^, m x m [-]; null where the problem is better treated mover by mover (contact_equations.h)
-  const double* q = nullptr;            // [sqrt(J)]
-  const double* scale = nullptr;        // s, one per contact [1/sqrt(kg)]
-  double* y = nullptr;                  // working memory, kMoverFreedoms per mover
-  double speed = 1;                     // what residuals are relative to [m/s], see contactResidual
+  // W^, m x m [-]; null where the problem is better treated mover by mover (contact_equations.h)
+  const double* W = nullptr;
+  const double* q = nullptr;      // [sqrt(J)]
+  const double* scale = nullptr;  // s, one per contact [1/sqrt(kg)]
+  double* y = nullptr;            // working memory, kMoverFreedoms per mover
+  double speed = 1;               // what residuals are relative to [m/s], see contactResidual
   int movers = 0;
 
   int contactCount() const { return static_cast<int>(mu.size()); }
@@ -28,8 +31,8 @@ struct ScaledProblem {
   double friction(int contact) const { return mu[static_cast<std::size_t>(contact)]; }
 };
 
-// Scales `problem`, its contacts weighed (residual.h), into `scratch`; W^ as well if `dense`. Where some w_i isn't positive and finite, no iterate has
-// a finite residual.
+// Scales `problem`, its contacts weighed (residual.h), into `scratch`; W^ as well if `dense`. Where some w_i isn't
+// positive and finite, no iterate has a finite residual.
 ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScratch& scratch);
 
 // Fills the scaled problem's sides, where that is done without W^ as well.

@@ -16,19 +16,19 @@ namespace {
 
 // The parameters of the search; docs/engine.md gives their reasons.
 constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
-constexpr double kEpsilonOfError = 1e3;                                        // the first is that times the start's error [s/m]
-constexpr double kEasier = 0.2, kHarder = 5;                                   // epsilon after a short round, after one that failed
-constexpr double kLeft = 0.1;                                                  // of what is enough: a round's own error
-constexpr double kFirstDescent = 1e-2;                                         // epsilon of descents, at most
-constexpr double kRough = 1e-2;                                                // of the start's error: a descent's own
-constexpr double kMostlyGive = 0.3;                                            // of a descent's error: a smaller epsilon helps
-constexpr int kEasySteps = 3, kMostRoundSteps = 8;                             // of a round
-constexpr int kDescents = 6, kMostDescentSteps = 30;                           // at a time; of one
-constexpr double kFar = 1e-3;                                                  // from which rounds fail more often than not [m/s]
-constexpr double kShareOfSlip = 3e-4;                                          // of what pushes: below it, in motion, errors don't show
-constexpr double kSliding = 0.05;                                              // of the problem's speeds: what slips faster is swept
-constexpr double kStillFading = 0.7;                                           // of an error or a give, from one time to the next
-constexpr int kSweepsAtATime = 8;                                              // at a time
+constexpr double kEpsilonOfError = 1e3;               // the first is that times the start's error [s/m]
+constexpr double kEasier = 0.2, kHarder = 5;          // epsilon after a short round, after one that failed
+constexpr double kLeft = 0.1;                         // of what is enough: a round's own error
+constexpr double kFirstDescent = 1e-2;                // epsilon of descents, at most
+constexpr double kRough = 1e-2;                       // of the start's error: a descent's own
+constexpr double kMostlyGive = 0.3;                   // of a descent's error: a smaller epsilon helps
+constexpr int kEasySteps = 3, kMostRoundSteps = 8;    // of a round
+constexpr int kDescents = 6, kMostDescentSteps = 30;  // at a time; of one
+constexpr double kFar = 1e-3;                         // from which rounds fail more often than not [m/s]
+constexpr double kShareOfSlip = 3e-4;                 // of what pushes: below it, in motion, errors don't show
+constexpr double kSliding = 0.05;                     // of the problem's speeds: what slips faster is swept
+constexpr double kStillFading = 0.7;                  // of an error or a give, from one time to the next
+constexpr int kSweepsAtATime = 8;                     // at a time
 
 constexpr std::int64_t kPerContactLooked = 150;         // multiplications
 constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 ms
@@ -94,7 +94,8 @@ class Search {
   // As good as what rests asks for.
   bool isExact() const {
     if (problem_.calm && error_.speed <= restErrorOf(options_)) return true;
-    return isWithinTolerance() && (!problem_.strict || error_.residual <= exactResidual(options_.tolerance, referenceSpeed(problem_)));
+    return isWithinTolerance() &&
+           (!problem_.strict || error_.residual <= exactResidual(options_.tolerance, referenceSpeed(problem_)));
   }
   // Error that is small enough [m/s].
   double limit() const {
@@ -131,7 +132,8 @@ class Search {
     if (isHit()) scratch_.hit_operations -= before - scratch_.operations_left;
   }
 
-  // Bodies that move so fast as in a hit aren't worth the same share of their speed: a tick's work follows from its contacts.
+  // Bodies that move so fast as in a hit aren't worth the same share of their speed:
+  // a tick's work follows from its contacts.
   bool isHit() const { return options_.accuracy > 0 && referenceSpeed(problem_) > kHitSpeed * options_.accuracy; }
   std::int64_t mostOperations(const MoverMatrix& matrix) const {
     const std::int64_t most = times() * std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
@@ -145,7 +147,8 @@ class Search {
     proceed(round);
     if (isEnough() && result_.give == 0 && isQuiet()) polish(round);
     conclude();
-    if (scratch_.operations_left < 0 && result_.method == SolveMethod::kNotConverged) return sweep();  // what is new has no impulse yet
+    // what is new has no impulse yet
+    if (scratch_.operations_left < 0 && result_.method == SolveMethod::kNotConverged) return sweep();
     if (isSqueezed(problem_, scratch_.weight, scratch_.best_r.data())) soften(round);
   }
 
@@ -180,13 +183,15 @@ class Search {
     if (isFar()) descend(round, kFirstDescent);
   }
 
-  // Rounds whose shift is that of their start, from the best iterate: they never fail, and come near from wherever they start.
+  // Rounds whose shift is that of their start, from the best iterate: they never
+  // fail, and come near from wherever they start.
   void descend(ProximalRound& round, double epsilon) {
     result_.method = SolveMethod::kAlternation;
     for (int n = 0; n < kDescents && !isEnough() && !isSpent(); ++n) {
       restart();
       const double before = best_.speed, least = std::max(left(), kRough * best_.speed);
-      const bool is_done = round.solve(Shift::kFrozen, {epsilon, least, stepsOf(kMostDescentSteps)}, result_.iterations);
+      const bool is_done =
+          round.solve(Shift::kFrozen, {epsilon, least, stepsOf(kMostDescentSteps)}, result_.iterations);
       const double give = noteGive(epsilon);
       recentre();
       const bool is_soft = give > kMostlyGive * error_.speed;
@@ -308,8 +313,8 @@ class Search {
     }
     softenShifted(round);
   }
-  // Where friction jams what walls close on, soft contacts have no answer by Coulomb's law either. With the shift of no impulse there is one, the least of a
-  // convex energy: it brings no energy in, and |r_i| <= |q| / e_i.
+  // Where friction jams what walls close on, soft contacts have no answer by Coulomb's law either. With the shift of no
+  // impulse there is one, the least of a convex energy: it brings no energy in, and |r_i| <= |q| / e_i.
   void softenShifted(ProximalRound& round) {
     const double least = std::max(left(), kRough * referenceSpeed(problem_));
     if (softens(round, Shift::kFrozen, {kSoftestEpsilon, least, kMostDescentSteps})) return;
@@ -335,7 +340,8 @@ class Search {
     const double enough = std::max(kMostAccuracies * options_.accuracy, options_.tolerance * referenceSpeed(problem_));
     respond(problem_, scratch_.best_r.data(), scratch_);
     error_ = respondedError(problem_, scratch_.best_r.data(), scratch_, scratch_.best_u.data());
-    const SweptResult sweeps = sweepUntil(problem_, enough, error_, scratch_, scratch_.best_r.data(), scratch_.best_u.data());
+    const SweptResult sweeps =
+        sweepUntil(problem_, enough, error_, scratch_, scratch_.best_r.data(), scratch_.best_u.data());
     result_.iterations += sweeps.sweeps;
     error_ = best_ = sweeps.error;
     result_.method = error_.speed <= enough ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
@@ -369,11 +375,13 @@ class Search {
 
 }  // namespace
 
-SolveResult searchImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u) {
+SolveResult searchImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch,
+                           double* r, double* u) {
   return Search(problem, options, scratch).run(r, u);
 }
 
-SolveResult softenImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u) {
+SolveResult softenImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch,
+                           double* r, double* u) {
   return Search(problem, options, scratch).runSoftly(r, u);
 }
 

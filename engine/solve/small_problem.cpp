@@ -54,8 +54,8 @@ bool eliminateRows(double (&A)[m][m], double (&b)[m]) {
   return (row[0] * B[0][n] + row[1] * B[1][n]) + row[2] * B[2][n];
 }
 
-// b becomes the solution of A x = b by 3 x 3 blocks and their inverses, a quarter of the work of elimination by rows. Blocks aren't exchanged: where
-// that loses digits, the residual shows it. False if one is singular or not finite.
+// b becomes the solution of A x = b by 3 x 3 blocks and their inverses, a quarter of the work of elimination by rows.
+// Blocks aren't exchanged: where that loses digits, the residual shows it. False if one is singular or not finite.
 template <int m>
 [[gnu::always_inline]] inline bool eliminateBlocks(double (&A)[m][m], double (&b)[m]) {
   for (int k = 0; k < m; k += 3) {
@@ -94,11 +94,13 @@ template <int m>
     const double b_k[3] = {b[k], b[k + 1], b[k + 2]};
     for (int l = 0; l < 3; ++l) b[k + l] = rowTimes(inverse[l], b_k);
     for (int i = k + 3; i < m; ++i) {
-      for (int l = 0; l < 3; ++l) across[k + l][i] = (inverse[l][0] * A[k][i] + inverse[l][1] * A[k + 1][i]) + inverse[l][2] * A[k + 2][i];
+      for (int l = 0; l < 3; ++l)
+        across[k + l][i] = (inverse[l][0] * A[k][i] + inverse[l][1] * A[k + 1][i]) + inverse[l][2] * A[k + 2][i];
       b[i] -= (A[k][i] * b[k] + A[k + 1][i] * b[k + 1]) + A[k + 2][i] * b[k + 2];
     }
     for (int i = k + 3; i < m; ++i) {
-      for (int j = i; j < m; ++j) A[i][j] -= (A[k][i] * across[k][j] + A[k + 1][i] * across[k + 1][j]) + A[k + 2][i] * across[k + 2][j];
+      for (int j = i; j < m; ++j)
+        A[i][j] -= (A[k][i] * across[k][j] + A[k + 1][i] * across[k + 1][j]) + A[k + 2][i] * across[k + 2][j];
     }
   }
   for (int k = m - 6; k >= 0; k -= 3) {
@@ -141,7 +143,8 @@ class SmallProblem {
   }
 
  private:
-  bool solveBy(bool blocks, const SolverOptions& options, bool strict, double* r_out, double* u_out, SolveResult& result) {
+  bool solveBy(bool blocks, const SolverOptions& options, bool strict, double* r_out, double* u_out,
+               SolveResult& result) {
     copy<m>(r_out, r_);
     const ContactError at_start = evaluate();
     const double start = at_start.residual;
@@ -233,7 +236,8 @@ class SmallProblem {
     WorstResidual worst;
     for (int i = 0; i < count; ++i) {
       const int first = rows * i;
-      worst.add(naturalMap2(r_ + first, u_ + first, rows, mu_[i], w_[i]), u_[first + kNormalRow], w_[i] * r_[first + kNormalRow]);
+      worst.add(naturalMap2(r_ + first, u_ + first, rows, mu_[i], w_[i]), u_[first + kNormalRow],
+                w_[i] * r_[first + kNormalRow]);
     }
     return worst.relativeTo(speed_);
   }
@@ -282,7 +286,8 @@ class SmallProblem {
     return mode;
   }
 
-  // The tangential rows: D W + w (I - D), row k: s W_k + (mu W_n - s t.W_T) t_k, and w ((1 - s) e_k + s t_k t - mu t_k e_n).
+  // The tangential rows: D W + w (I - D), row k: s W_k + (mu W_n - s t.W_T) t_k,
+  // and w ((1 - s) e_k + s t_k t - mu t_k e_n).
   void slide(int i, const double* y) {
     const int first = rows * i;
     const double w = w_[i];
@@ -318,13 +323,16 @@ bool solveAs(const ContactProblem& problem, const SolverOptions& options, double
 
 }  // namespace
 
-bool solveSmallProblem(const ContactProblem& problem, const SolverOptions& options, double* r, double* u, SolveResult& result) {
+bool solveSmallProblem(const ContactProblem& problem, const SolverOptions& options, double* r, double* u,
+                       SolveResult& result) {
   const int n = problem.contactCount();
   if (n > kSmallContacts || (n == kSmallContacts && problem.movers < n)) return false;
   const int rows = problem.rows(0);
   if (rows > 4 || problem.rowCount() != n * rows) return false;
-  if (n == 1) return rows == 3 ? solveAs<1, 3>(problem, options, r, u, result) : solveAs<1, 4>(problem, options, r, u, result);
-  if (n == 2) return rows == 3 ? solveAs<2, 3>(problem, options, r, u, result) : solveAs<2, 4>(problem, options, r, u, result);
+  if (n == 1)
+    return rows == 3 ? solveAs<1, 3>(problem, options, r, u, result) : solveAs<1, 4>(problem, options, r, u, result);
+  if (n == 2)
+    return rows == 3 ? solveAs<2, 3>(problem, options, r, u, result) : solveAs<2, 4>(problem, options, r, u, result);
   return rows == 3 ? solveAs<3, 3>(problem, options, r, u, result) : solveAs<3, 4>(problem, options, r, u, result);
 }
 

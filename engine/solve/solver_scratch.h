@@ -1,5 +1,5 @@
-// solver_scratch: working memory of solveContacts, sized once; what it holds means nothing between calls, but for the structure of the last
-// factorisation.
+// solver_scratch: working memory of solveContacts, sized once; what it holds means nothing between calls, but for
+// the structure of the last factorisation.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -11,12 +11,13 @@
 
 namespace pincer::engine {
 
-// Multiplications in a second, of iterations as they are counted: few enough that on an AMD EPYC at 3.7 GHz capped ticks take no longer than their cap
-// (`pincer stress` shows the longest; decision 4).
+// Multiplications in a second, of iterations as they are counted: few enough that on an AMD EPYC at 3.7 GHz capped
+// ticks take no longer than their cap (`pincer stress` shows the longest; decision 4).
 constexpr double kOperationsPerSecond = 8e8;
 constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
 
-// How a contact takes part in the linear equations of contact_equations.h; blocks row-major with stride kMaxContactRows.
+// How a contact takes part in the linear equations of contact_equations.h;
+// blocks row-major with stride kMaxContactRows.
 enum class Coupling : std::uint8_t { kNone, kIdentity, kGeneral };
 struct ContactTerms {
   static constexpr int kSize = kMaxContactRows * kMaxContactRows;
@@ -47,7 +48,8 @@ struct SolverScratch {
   int haste = 1;                            // a search takes so many times fewer operations
   std::vector<double> weight;               // w_i, mean of W_ii's diagonal, per contact [1/kg]
   std::vector<double> frozen;               // shifts, per contact [m/s]; proximal_round.h
-  // Per row: impulses and velocities of the iterate, the rounds' centre r_c, the best iterate, what contacts gave way by, and what methods need.
+  // Per row: impulses and velocities of the iterate, the rounds' centre r_c, the best iterate, what
+  // contacts gave way by, and what methods need.
   std::vector<double> r, u, centre, best_r, best_u, give, change, work;
   // Per mover: y = A^T r, a direction, a gradient, and what methods need.
   std::vector<double> y, direction, gradient, way;

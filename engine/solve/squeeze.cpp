@@ -10,11 +10,13 @@ namespace pincer::engine {
 
 namespace {
 
-// No contact that moves something does so by more than W_nn r_n, at most the trace of W_ii: heaps needn't look at their sides.
+// No contact that moves something does so by more than W_nn r_n, at most the trace of
+// W_ii: heaps needn't look at their sides.
 bool maySqueeze(const ContactProblem& problem, const std::vector<double>& weight, const double* r, double most) {
   double largest = 0;
   for (int i = 0; i < problem.contactCount(); ++i)
-    largest = std::max(largest, problem.rows(i) * weight[static_cast<std::size_t>(i)] * r[problem.firstRow(i) + kNormalRow]);
+    largest =
+        std::max(largest, problem.rows(i) * weight[static_cast<std::size_t>(i)] * r[problem.firstRow(i) + kNormalRow]);
   return largest > most;
 }
 
@@ -37,7 +39,8 @@ bool isSqueezed(const ContactProblem& problem, const std::vector<double>& weight
     largest = std::max(largest, r[problem.firstRow(i) + kNormalRow]);
     for (const ContactSide& side : problem.sidesOf(i)) {
       const double mobility = mobilityOf(side);
-      if (mobility > kRoundOff * weight[static_cast<std::size_t>(i)]) least_mobility = std::min(least_mobility, mobility);
+      if (mobility > kRoundOff * weight[static_cast<std::size_t>(i)])
+        least_mobility = std::min(least_mobility, mobility);
     }
   }
   return largest * least_mobility > most;

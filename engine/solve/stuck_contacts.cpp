@@ -14,13 +14,15 @@ namespace {
 
 constexpr int kMostSteps = 3;
 constexpr double kFrictionUsed = 0.5;  // at most, for the step to go on with its shares
-constexpr double kPadGive = 1e-5;      // of corners of pads that contradict each other, as turning by 5 rad/s lets them [m/s]
+// of corners of pads that contradict each other, as turning by 5 rad/s lets them [m/s]
+constexpr double kPadGive = 1e-5;
 constexpr std::int64_t kPerContactStuck = 300, kPerMoverStuck = 200;  // multiplications of a step
 
 // Steps with a set of contacts that hold.
 class StuckSolve {
  public:
-  StuckSolve(const ContactProblem& problem, const StuckMovers& movers, const SolverScratch& scratch, double* r, double* u)
+  StuckSolve(const ContactProblem& problem, const StuckMovers& movers, const SolverScratch& scratch, double* r,
+             double* u)
       : problem_(problem), movers_(movers), scratch_(scratch), r_(r), u_(u) {}
 
   bool holds(int i) const { return holds_[i]; }
@@ -40,12 +42,14 @@ class StuckSolve {
     return any;
   }
 
-  // False if a contact slides or opens, or has to push that doesn't yet: of answers in which fewer contacts hold, a step can't tell the right one.
+  // False if a contact slides or opens, or has to push that doesn't yet: of answers in which fewer
+  // contacts hold, a step can't tell the right one.
   bool allStayAsTheyAre() const {
     for (int i = 0; i < problem_.contactCount(); ++i) {
       const int first = problem_.firstRow(i), rows = problem_.rows(i);
       double y[kMaxContactRows] = {};
-      for (int k = 0; k < rows; ++k) y[k] = scratch_.weight[static_cast<std::size_t>(i)] * r_[first + k] - u_[first + k];
+      for (int k = 0; k < rows; ++k)
+        y[k] = scratch_.weight[static_cast<std::size_t>(i)] * r_[first + k] - u_[first + k];
       const ContactMode mode = contactMode(y, rows, problem_.friction(i));
       if (mode != (holds_[i] ? ContactMode::kStick : ContactMode::kOpen)) return false;
     }
@@ -95,8 +99,8 @@ class StuckSolve {
 // The two ways to an answer, each from its own start.
 class StuckAnswer {
  public:
-  StuckAnswer(const ContactProblem& problem, const StuckMovers& movers, const SolverOptions& options, SolverScratch& scratch, double* r,
-              double* u)
+  StuckAnswer(const ContactProblem& problem, const StuckMovers& movers, const SolverOptions& options,
+              SolverScratch& scratch, double* r, double* u)
       : problem_(problem), options_(options), scratch_(scratch), r_(r), u_(u), solve_(problem, movers, scratch, r, u) {}
 
   // From the warm start.
@@ -104,7 +108,8 @@ class StuckAnswer {
     const bool is_close = result.residual <= options_.tolerance;
     const double enough = (is_close ? kStrictness : 0.5) * options_.tolerance;
     solve_.holdWhatPushes();
-    while (result.iterations < kMostSteps && mayStep() && solve_.allStayAsTheyAre() && solve_.step() && solve_.holdsWith(kFrictionUsed)) {
+    while (result.iterations < kMostSteps && mayStep() && solve_.allStayAsTheyAre() && solve_.step() &&
+           solve_.holdsWith(kFrictionUsed)) {
       if (isSolved(enough, result)) return true;
     }
     return false;
@@ -127,7 +132,9 @@ class StuckAnswer {
   }
 
  private:
-  bool mayStep() { return spend(kPerContactStuck * problem_.contactCount() + kPerMoverStuck * problem_.movers, scratch_); }
+  bool mayStep() {
+    return spend(kPerContactStuck * problem_.contactCount() + kPerMoverStuck * problem_.movers, scratch_);
+  }
   void startFromNone() {
     std::fill(r_, r_ + problem_.rowCount(), 0.0);
     errorOf(problem_, r_, scratch_, u_);
@@ -143,7 +150,8 @@ class StuckAnswer {
     return error.residual <= enough && !isSqueezed(problem_, scratch_.weight, r_);
   }
 
-  // What is left of the velocities of contacts that hold, no impulses take away: they contradict each other by that, and give way.
+  // What is left of the velocities of contacts that hold, no impulses take away: they
+  // contradict each other by that, and give way.
   bool giveWay(SolveResult& result) {
     WorstResidual worst;
     double most = 0;
@@ -155,7 +163,8 @@ class StuckAnswer {
         u_[k] += give;
       }
       const double w = scratch_.weight[static_cast<std::size_t>(i)];
-      worst.add(naturalMap2(r_ + first, u_ + first, rows, problem_.friction(i), w), u_[first + kNormalRow], w * r_[first + kNormalRow]);
+      worst.add(naturalMap2(r_ + first, u_ + first, rows, problem_.friction(i), w), u_[first + kNormalRow],
+                w * r_[first + kNormalRow]);
     }
     result.give = most;
     return most <= kPadGive && isEnough(worst.relativeTo(referenceSpeed(problem_)), 0.5 * options_.tolerance, result);
@@ -184,8 +193,8 @@ bool hasFace(const ContactProblem& problem) {
 
 }  // namespace
 
-bool solveStuckContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
-                        SolveResult& result) {
+bool solveStuckContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r,
+                        double* u, SolveResult& result) {
   PINCER_ASSERT(problem.contactCount() <= kFewContacts);
   StuckMovers movers;
   if (!problem.first_side.empty() || !movers.count(problem)) return false;

@@ -85,8 +85,10 @@ void Sweeps::relax(int i) {
   const double *const q_i = problem_.q.data() + first, *const way_i = way_ + first;
   withForm(problem_, i, [&](auto rows, const auto& form) {
     for (int k = 0; k < rows; ++k) work_of_way_ += q_i[k] * way_i[k];
-    // Contacts that push on nothing and don't close: so are many of a heap's contacts, and most rows needn't be looked at.
-    if (r_i[kNormalRow] == 0 && normalVelocityOf(form, q_i[kNormalRow], y_) >= 0) return std::fill(change_i, change_i + rows, 0.0);
+    // Contacts that push on nothing and don't close: so are many of a heap's
+    // contacts, and most rows needn't be looked at.
+    if (r_i[kNormalRow] == 0 && normalVelocityOf(form, q_i[kNormalRow], y_) >= 0)
+      return std::fill(change_i, change_i + rows, 0.0);
     double u[kMaxContactRows], r[kMaxContactRows];
     velocityOf(form, rows, q_i, y_, u);
     const double shift = solveOwn(i, form, rows, u, r);
@@ -113,7 +115,8 @@ void Sweeps::relax(int i) {
   return mu * limitFriction(mu, r) / round.inverse_W_tt;
 }
 template <class Rows>
-[[gnu::always_inline]] inline double Sweeps::solveOwn(int i, std::span<const ContactSide>, Rows rows, double* u, double* r) {
+[[gnu::always_inline]] inline double Sweeps::solveOwn(int i, std::span<const ContactSide>, Rows rows, double* u,
+                                                      double* r) {
   const double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   const double* const r_i = r_ + problem_.firstRow(i);
   const double mu = problem_.friction(i);
@@ -145,7 +148,8 @@ void Sweeps::sweep(bool backwards) {
 
 namespace {
 
-// Where  a g_z + b g_p + (a^2 zz + 2 a b zp + b^2 pp) / 2  is least, within bounds: where contacts are redundant z and p may be any part of r that moves
+// Where  a g_z + b g_p + (a^2 zz + 2 a b zp + b^2 pp) / 2  is least, within bounds: where contacts are
+//                                                          redundant z and p may be any part of r that moves
 // nothing, and what is left of zz and pp is round-off. Nowhere if the sweep's own way would be taken back.
 struct LeastEnergy {
   double a = 0, b = 0;
@@ -154,7 +158,8 @@ struct LeastEnergy {
     constexpr double kLongest = 3;       // hardly ever are more than 2 asked for, and less than -1/2
     constexpr double kParallel = 1e-12;  // of z and p: the squared sine of their angle
     const double determinant = zz * pp - zp * zp;
-    const double again = determinant > kParallel * zz * pp ? std::clamp((zp * g_z - zz * g_p) / determinant, 0.0, 1.0) : 0;
+    const double again =
+        determinant > kParallel * zz * pp ? std::clamp((zp * g_z - zz * g_p) / determinant, 0.0, 1.0) : 0;
     const double further = std::min(-(g_z + again * zp) / zz, kLongest);
     if (!(further > -1)) return;
     a = further;
@@ -208,8 +213,8 @@ void Sweeps::goFurther(int i, double a, double b) {
   });
 }
 
-SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch, double* r,
-                       double* u) {
+SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch,
+                       double* r, double* u) {
   const int n = problem.contactCount();
   const bool rests = start.speed <= enough;
   const int most = std::clamp(kVisits / n, kFewestSweeps, kMostSweeps);
@@ -223,12 +228,13 @@ SweptResult sweepUntil(const ContactProblem& problem, double enough, const Conta
   };
   for (;;) {
     const bool is_spent = !spend(kPerContactSwept * n, scratch);
-    method.sweep(false);  // to and fro would be half as fast: what was visited last learns nothing from being visited first
+    // to and fro would be half as fast: what was visited last learns nothing from being visited first
+    method.sweep(false);
     ++result.sweeps;
     if (result.sweeps == most || (is_spent && result.sweeps >= kFewestSweeps))
       break;  // contacts that are new have no impulse yet: every tick gets a few
-    const bool is_due =
-        result.sweeps % kBetweenLooks == 0 ? method.largestChange() <= kWorthALook * enough : rests && result.sweeps == kRestingSweeps;
+    const bool is_due = result.sweeps % kBetweenLooks == 0 ? method.largestChange() <= kWorthALook * enough
+                                                           : rests && result.sweeps == kRestingSweeps;
     if (is_due && isEnough()) break;
     method.accelerate();
   }

@@ -1,14 +1,15 @@
 // sweeps: projected Gauss-Seidel with an exact solution per contact (local_contact.h).
 //
-// Slow where contacts are redundant or masses differ, but it hardly ever fails to improve: for what is entangled so that no factorisation is affordable,
-// as heaps of hundreds of balls, warm-started from tick to tick.
+// Slow where contacts are redundant or masses differ, but it hardly ever fails to improve: for what is entangled so
+// that no factorisation is affordable, as heaps of hundreds of balls, warm-started from tick to tick.
 //
 // accelerate(): z is the way of the last sweep, p the whole way of the one before. On to the least of the energy
 //   E(r) = |A^T r|^2 / 2 + r . (q + s),   s_i = mu_i |u_iT| e_n as the sweep left it
-// over r + a z + b p, then back into the cones. Were all contacts to stick, and the sweep symmetric, this would be the method of conjugate gradients. For fixed s
-// the least of E in the cones solves the contact problem: without s what slides would be carried on for ever.
-// Sources: M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235-257 (non-smooth contact dynamics); M. Silcowitz, S. Niebe, K. Erleben,
-// The Visual Computer 26 (2010) 893-901 (conjugate gradients on its sweeps); E: V. Acary, F. Cadoux, C. Lemarechal, J. Malick, ZAMM 91 (2011) 155-175.
+// over r + a z + b p, then back into the cones. Were all contacts to stick, and the sweep symmetric, this would be the
+// method of conjugate gradients. For fixed s the least of E in the cones solves the contact problem: without s what
+// slides would be carried on for ever. Sources: M. Jean, Comput. Methods Appl. Mech. Engrg. 177 (1999) 235-257
+// (non-smooth contact dynamics); M. Silcowitz, S. Niebe, K. Erleben, The Visual Computer 26 (2010) 893-901 (conjugate
+// gradients on its sweeps); E: V. Acary, F. Cadoux, C. Lemarechal, J. Malick, ZAMM 91 (2011) 155-175.
 #pragma once
 #include <cmath>
 
@@ -19,8 +20,8 @@ namespace pincer::engine {
 constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep, but for
 constexpr std::int64_t kPerSlideStep = 60;      // those of a step of a search for a slide (local_contact.h)
 
-// Sweeps over the impulses `r`, whose contacts are weighed, each at a cost linear in the contacts; scratch.y is A^T r, and follows. Uses scratch.local,
-// change, work, direction and way.
+// Sweeps over the impulses `r`, whose contacts are weighed, each at a cost linear in the contacts; scratch.y is A^T r,
+// and follows. Uses scratch.local, change, work, direction and way.
 class Sweeps {
  public:
   Sweeps(const ContactProblem& problem, SolverScratch& scratch, double* r);
@@ -49,7 +50,8 @@ class Sweeps {
   double* const r_;
   double* const y_;
   static constexpr int kTermsBefore = 2;
-  double* const terms_;  // per contact: of isotropic ones 1 / W_tt, 0 of others; 1 / W_nn; the inverse of W_ii, of others; W_ii
+  // per contact: of isotropic ones 1 / W_tt, 0 of others; 1 / W_nn; the inverse of W_ii, of others; W_ii
+  double* const terms_;
   int stride_;
   double *const change_, *const way_;      // z and p
   double *const y_before_, *const y_way_;  // y before the last sweep; A^T p
@@ -59,12 +61,13 @@ class Sweeps {
   int slide_steps_ = 0;
 };
 
-// From the warm start `r`, whose y = A^T r and u scratch.y and `u` are, until the error is at most `enough` [m/s] or `start` shows that a few do.
+// From the warm start `r`, whose y = A^T r and u scratch.y and `u` are, until the error is at most
+// `enough` [m/s] or `start` shows that a few do.
 struct SweptResult {
   int sweeps = 0;
   ContactError error;
 };
-SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch, double* r,
-                       double* u);
+SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch,
+                       double* r, double* u);
 
 }  // namespace pincer::engine

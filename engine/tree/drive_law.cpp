@@ -6,7 +6,8 @@
 
 namespace pincer::engine {
 
-// At m/4 the error of the frequency is (h^2 k/m)^2/480, 1e-4, and the scheme is far from its limit of stability, h^2 k = 6 m.
+// At m/4 the error of the frequency is (h^2 k/m)^2/480, 1e-4, and the scheme is far
+// from its limit of stability, h^2 k = 6 m.
 bool isSoft(double k, double d, double m, double h) { return h * h * k <= 0.25 * m && h * d <= 0.5 * m; }
 
 ImpliedInertia softLaw(const ElementTick& t) {

@@ -52,11 +52,12 @@ std::size_t forEachRow(JointKind kind, const Quat& q_OJ, std::size_t first, F f)
   return first;
 }
 
-void addLinkRow(const TreeModel& tree, const TreePlace& place, int link, const Vec3& p_OX, double sign, const Vec3& axis_W, bool is_point,
-                std::span<double> G) {
+void addLinkRow(const TreeModel& tree, const TreePlace& place, int link, const Vec3& p_OX, double sign,
+                const Vec3& axis_W, bool is_point, std::span<double> G) {
   if (link < 0) return;
   const Vec3 along_W = sign * axis_W;
-  addJacobian(tree, place, link, p_OX, is_point ? along_W : Vec3(Vec3::Zero()), is_point ? Vec3(Vec3::Zero()) : along_W, G);
+  addJacobian(tree, place, link, p_OX, is_point ? along_W : Vec3(Vec3::Zero()), is_point ? Vec3(Vec3::Zero()) : along_W,
+              G);
 }
 
 struct CentreAcceleration {
@@ -70,7 +71,9 @@ Vec3 accelerationOfPoint(const Vec3& p_OX, const LoopSide& side, const CentreAcc
   const Vec3 r_W = p_OX - side.p_O;
   return centre.a_W + centre.alpha_W.cross(r_W) + side.motion.w_W.cross(side.motion.w_W.cross(r_W));
 }
-Vec3 velocityOfPoint(const Vec3& p_OX, const LoopSide& side) { return side.motion.v_W + side.motion.w_W.cross(p_OX - side.p_O); }
+Vec3 velocityOfPoint(const Vec3& p_OX, const LoopSide& side) {
+  return side.motion.v_W + side.motion.w_W.cross(p_OX - side.p_O);
+}
 
 // rows.change <- the least change in the metric of the factor with G times it = rows.want.
 void findChange(const TreeModel& tree, const TreeFactor& factor, const LoopBasis& basis, LoopRows& rows) {
@@ -126,15 +129,17 @@ void wantNoOpening(std::span<const double> u, LoopRows& rows) {
   }
 }
 
-void wantBend(const TreeModel& tree, const TreeBase& base, const Vec3& gravity_W, const TreePlace& place, std::span<const LinkBias> biases,
-              double share, LoopRows& rows) {
+void wantBend(const TreeModel& tree, const TreeBase& base, const Vec3& gravity_W, const TreePlace& place,
+              std::span<const LinkBias> biases, double share, LoopRows& rows) {
   std::size_t next = 0;
   for (const TreeLoop& loop : tree.loops) {
     const LoopSides sides = loopSidesOf(tree, base, place, loop);
     const LoopSide &a = sides.a, &b = sides.b;
     const Vec3 p_OX = a.X_OJ.p, u_W = velocityOfPoint(p_OX, a) - velocityOfPoint(p_OX, b);
-    const CentreAcceleration of_a = centreOf(base, gravity_W, biases, loop.a), of_b = centreOf(base, gravity_W, biases, loop.b);
-    const Vec3 point_W = accelerationOfPoint(p_OX, a, of_a) - accelerationOfPoint(p_OX, b, of_b) - 2 * b.motion.w_W.cross(u_W);
+    const CentreAcceleration of_a = centreOf(base, gravity_W, biases, loop.a),
+                             of_b = centreOf(base, gravity_W, biases, loop.b);
+    const Vec3 point_W =
+        accelerationOfPoint(p_OX, a, of_a) - accelerationOfPoint(p_OX, b, of_b) - 2 * b.motion.w_W.cross(u_W);
     const Vec3 turn_W = of_a.alpha_W - of_b.alpha_W - b.motion.w_W.cross(a.motion.w_W - b.motion.w_W);
     next = forEachRow(loop.kind, b.X_OJ.q, next, [&](std::size_t k, const Vec3& axis_W, bool is_point) {
       rows.want[k] -= share * axis_W.dot(is_point ? point_W : turn_W);
@@ -147,8 +152,8 @@ void addWanted(const TreeModel& tree, const TreeFactor& factor, LoopRows& rows, 
   for (std::size_t c = 0; c < x.size(); ++c) x[c] += rows.change[c];
 }
 
-double closeLoops(const TreeModel& tree, const TreeBase& base, const TreeFactor& factor, int passes, LoopRows& rows, LoopBasis& basis,
-                  std::span<double> q, std::span<double> u, TreePlace& place) {
+double closeLoops(const TreeModel& tree, const TreeBase& base, const TreeFactor& factor, int passes, LoopRows& rows,
+                  LoopBasis& basis, std::span<double> q, std::span<double> u, TreePlace& place) {
   double worst = 0;
   for (int pass = 0;; ++pass) {
     fillLoops(tree, base, place, rows);

@@ -62,7 +62,8 @@ bool factorise(const TreeModel& tree, TreeFactor& factor, std::span<const char> 
 
 void solve(const TreeModel& tree, const TreeFactor& factor, std::span<double> x) {
   for (int i = tree.columnCount() - 1; i >= 0; --i) {
-    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) x[slot(j)] -= factor.entries[entryOf(tree, i, j)] * x[slot(i)];
+    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)])
+      x[slot(j)] -= factor.entries[entryOf(tree, i, j)] * x[slot(i)];
   }
   for (std::size_t i = 0; i < x.size(); ++i) x[i] *= factor.root_inverse[i];
   if (!tree.loops.empty()) factor.loops.dropBlocked(x);
@@ -71,7 +72,8 @@ void solve(const TreeModel& tree, const TreeFactor& factor, std::span<double> x)
 
 void scaleOpenRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span<double> row) {
   for (int i = tip; i >= 0; i = tree.before[slot(i)]) {
-    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) row[slot(j)] -= row[slot(i)] * factor.entries[entryOf(tree, i, j)];
+    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)])
+      row[slot(j)] -= row[slot(i)] * factor.entries[entryOf(tree, i, j)];
     row[slot(i)] *= factor.root_inverse[slot(i)];
   }
 }
@@ -84,7 +86,8 @@ int scaleRow(const TreeModel& tree, const TreeFactor& factor, int tip, std::span
 
 void scaleWholeRow(const TreeModel& tree, const TreeFactor& factor, std::span<double> row) {
   for (int i = tree.columnCount() - 1; i >= 0; --i) {
-    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) row[slot(j)] -= factor.entries[entryOf(tree, i, j)] * row[slot(i)];
+    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)])
+      row[slot(j)] -= factor.entries[entryOf(tree, i, j)] * row[slot(i)];
     row[slot(i)] *= factor.root_inverse[slot(i)];
   }
   if (!tree.loops.empty()) factor.loops.takeFree(row);
@@ -93,7 +96,8 @@ void scaleWholeRow(const TreeModel& tree, const TreeFactor& factor, std::span<do
 void unscale(const TreeModel& tree, const TreeFactor& factor, std::span<double> x) {
   for (int i = 0; i < tree.columnCount(); ++i) {
     x[slot(i)] *= factor.root_inverse[slot(i)];
-    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)]) x[slot(i)] -= factor.entries[entryOf(tree, i, j)] * x[slot(j)];
+    for (int j = tree.before[slot(i)]; j >= 0; j = tree.before[slot(j)])
+      x[slot(i)] -= factor.entries[entryOf(tree, i, j)] * x[slot(j)];
   }
 }
 

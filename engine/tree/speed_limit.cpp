@@ -21,8 +21,8 @@ double squareIn(const TreeModel& tree, const std::vector<double>& M, std::span<c
   return sum;
 }
 
-double springShare(const TreeModel& tree, const TreePush& push, const TreePlace& place, std::span<const double> q, bool at_end,
-                   TreeCourse& course) {
+double springShare(const TreeModel& tree, const TreePush& push, const TreePlace& place, std::span<const double> q,
+                   bool at_end, TreeCourse& course) {
   double sum = 0;
   forEachElement(tree, push, place, q, course, [&](const Element& element, const ElementCourse&) {
     const double e = element.l - element.law.target - (at_end ? element.law.way : 0);
@@ -32,8 +32,8 @@ double springShare(const TreeModel& tree, const TreePush& push, const TreePlace&
 }
 
 // Sum of k^1/2 |s|, and I in course.step.
-double fillImpulses(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q, double h,
-                    TreeCourse& course) {
+double fillImpulses(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                    double h, TreeCourse& course) {
   std::fill(course.u.begin(), course.u.end(), 0.0);
   placeLinks(tree, base.mid, course.q, course.stage);
   moveLinks(tree, base.mid, course.q, course.u, course.stage);
@@ -43,7 +43,8 @@ double fillImpulses(const TreeModel& tree, const BaseCourse& base, const TreePus
   double sum = 0;
   forEachElement(tree, push, course.stage, q, course, [&](const Element& element, const ElementCourse&) {
     sum += std::sqrt(element.law.stiffness) * std::abs(element.law.way);
-    for (const ColumnShare& c : element.c) course.step[slot(c.column)] += c.share * element.law.damping * element.law.way;
+    for (const ColumnShare& c : element.c)
+      course.step[slot(c.column)] += c.share * element.law.damping * element.law.way;
   });
   return sum;
 }
@@ -86,11 +87,12 @@ void limitFreeCourse(const TreeModel& tree, const BaseCourse& base, const TreePu
   for (std::size_t c = 0; c < u.size(); ++c) course.way_free[c] = 0.5 * h * (u[c] + course.u_free[c]);
 }
 
-void limitRates(const TreeModel& tree, const TreeBase& base, const TreePush& push, std::span<const double> q, double given,
-                TreeCourse& course, std::span<double> u) {
+void limitRates(const TreeModel& tree, const TreeBase& base, const TreePush& push, std::span<const double> q,
+                double given, TreeCourse& course, std::span<double> u) {
   std::vector<double>& M = course.stage_factor.entries;
   fillInertia(tree, course.end, course.composite, M);
-  const double reach = std::sqrt(course.most) + given, most = reach * reach - springShare(tree, push, course.end, q, true, course);
+  const double reach = std::sqrt(course.most) + given,
+               most = reach * reach - springShare(tree, push, course.end, q, true, course);
   if (scaleDown(squareIn(tree, M, u), most, u)) moveLinks(tree, base, q, u, course.end);
 }
 

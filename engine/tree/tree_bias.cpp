@@ -7,15 +7,18 @@
 namespace pincer::engine {
 namespace {
 
-Vec3 momentum(const TreeLink& link, const Quat& q_WL, const Vec3& w_W) { return q_WL * link.moments.cwiseProduct(q_WL.conjugate() * w_W); }
+Vec3 momentum(const TreeLink& link, const Quat& q_WL, const Vec3& w_W) {
+  return q_WL * link.moments.cwiseProduct(q_WL.conjugate() * w_W);
+}
 
 struct Carrier {
   Vec3 p_O, w_W, a_W, alpha_W;
 };
 
-// Acceleration that a coordinate's rate adds: the turn or slide past its carrier, whose axis turns with that; its own rate changes as its leader's polynomial bends.
-void accelerate(const TreeModel& tree, const TreePlace& place, const TreeLink& link, const Carrier& carrier, std::span<const double> u,
-                const LinkPlace& moved, LinkBias& out) {
+// Acceleration that a coordinate's rate adds: the turn or slide past its carrier, whose axis turns with that; its own
+// rate changes as its leader's polynomial bends.
+void accelerate(const TreeModel& tree, const TreePlace& place, const TreeLink& link, const Carrier& carrier,
+                std::span<const double> u, const LinkPlace& moved, LinkBias& out) {
   const Vec3 r_W = moved.p_OJ - carrier.p_O;
   Vec3 a_W = carrier.a_W + carrier.alpha_W.cross(r_W) + carrier.w_W.cross(carrier.w_W.cross(r_W));
   out.alpha_W = carrier.alpha_W;
@@ -36,8 +39,9 @@ void accelerate(const TreeModel& tree, const TreePlace& place, const TreeLink& l
 
 }  // namespace
 
-void fillBias(const TreeModel& tree, const TreePlace& place, const TreeBase& base, const Vec3& gravity_W, std::span<const LinkForce> forces,
-              std::span<const double> u, std::span<LinkBias> links, std::span<double> C) {
+void fillBias(const TreeModel& tree, const TreePlace& place, const TreeBase& base, const Vec3& gravity_W,
+              std::span<const LinkForce> forces, std::span<const double> u, std::span<LinkBias> links,
+              std::span<double> C) {
   const Carrier ground{base.X_WB.q * -tree.links.front().X_PJ.p, base.motion.w_W, base.a_W - gravity_W, base.alpha_W};
   for (std::size_t l = 0; l < tree.links.size(); ++l) {
     const TreeLink& link = tree.links[l];
@@ -51,7 +55,8 @@ void fillBias(const TreeModel& tree, const TreePlace& place, const TreeBase& bas
       accelerate(tree, place, link, {parent.p_OL, parent.motion.w_W, bias.a_W, bias.alpha_W}, u, moved, out);
     }
     out.f_W = link.mass * out.a_W;
-    Vec3 moment_W = momentum(link, moved.q_WL, out.alpha_W) + moved.motion.w_W.cross(momentum(link, moved.q_WL, moved.motion.w_W));
+    Vec3 moment_W =
+        momentum(link, moved.q_WL, out.alpha_W) + moved.motion.w_W.cross(momentum(link, moved.q_WL, moved.motion.w_W));
     if (!forces.empty()) {
       out.f_W -= forces[l].f_W;
       moment_W -= forces[l].tau_W;

@@ -1,6 +1,7 @@
 // tree_bias: the forces that a tree's motion takes, by Newton and Euler, link by link.
 //
-//   tau = M u' + C,     C = T^T (sum over links of J^T (m (a - g), I alpha + w x I w) - what is applied),  a and alpha at u' = 0
+//   tau = M u' + C,     C = T^T (sum over links of J^T (m (a - g), I alpha + w x I w) -
+//                       what is applied),  a and alpha at u' = 0
 //
 // Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, section 5.3.
 #pragma once
@@ -22,8 +23,10 @@ struct LinkBias {
   Vec3 f_W, moment_W;  // that the joint carries; the moment about the joint
 };
 
-// C by columns, after placeLinks, and moveLinks at the same u. `forces`: one per link, or none. `links`: one per link, scratch.
-void fillBias(const TreeModel& tree, const TreePlace& place, const TreeBase& base, const Vec3& gravity_W, std::span<const LinkForce> forces,
-              std::span<const double> u, std::span<LinkBias> links, std::span<double> C);
+// C by columns, after placeLinks, and moveLinks at the same u. `forces`: one per link,
+// or none. `links`: one per link, scratch.
+void fillBias(const TreeModel& tree, const TreePlace& place, const TreeBase& base, const Vec3& gravity_W,
+              std::span<const LinkForce> forces, std::span<const double> u, std::span<LinkBias> links,
+              std::span<double> C);
 
 }  // namespace pincer::engine

@@ -30,9 +30,10 @@ double leastInertia(const TreeModel& tree, std::span<const ColumnShare> c, TreeC
   return 1 / sum;
 }
 
-// M^ and its factor at q_m, the elements' laws from where the tick starts, and their impulses by columns in course.step. True if all are soft.
-bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& push, std::span<const double> q, std::span<const double> u,
-                double h, TreeCourse& course) {
+// M^ and its factor at q_m, the elements' laws from where the tick starts, and their impulses by
+// columns in course.step. True if all are soft.
+bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& push, std::span<const double> q,
+                std::span<const double> u, double h, TreeCourse& course) {
   fillInertia(tree, course.mid, course.composite, course.factor.entries);
   course.stage_factor.entries = course.factor.entries;
   if (!tree.loops.empty()) fillLoops(tree, base, course.mid, course.loop_rows);
@@ -53,12 +54,14 @@ bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& pus
     for (const ColumnShare& c : element.c) course.step[slot(c.column)] += c.share * out.implied.impulse;
   });
   if (!push.locked.empty()) course.inertia = course.factor.entries;
-  course.sound = tree.loops.empty() ? factorise(tree, course.factor, push.locked) : factoriseClosed(tree, course.loop_rows, course.factor);
+  course.sound = tree.loops.empty() ? factorise(tree, course.factor, push.locked)
+                                    : factoriseClosed(tree, course.loop_rows, course.factor);
   return are_soft;
 }
 
 // Stops the locked columns: the others feel that they do.
-void solveLocked(const TreeModel& tree, const TreePush& push, std::span<const double> u, TreeCourse& course, std::vector<double>& change) {
+void solveLocked(const TreeModel& tree, const TreePush& push, std::span<const double> u, TreeCourse& course,
+                 std::vector<double>& change) {
   course.asked = change;
   for (std::size_t c = 0; c < u.size(); ++c) course.force[c] = push.locked[c] ? -u[c] : 0;
   multiply(tree, course.inertia, course.force, course.C);
@@ -68,8 +71,8 @@ void solveLocked(const TreeModel& tree, const TreePush& push, std::span<const do
 }
 
 // Du = M^^-1 (h (tau - C(q_m, course.u)) + p) of what goes by u at the start; into `change`.
-void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u, double h, TreeCourse& course,
-             std::vector<double>& change) {
+void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u, double h,
+             TreeCourse& course, std::vector<double>& change) {
   moveLinks(tree, base.mid, course.q, course.u, course.mid);
   fillConstantForces(tree, push, course.mid, course, course.force);
   fillBias(tree, course.mid, base.mid, push.gravity_W, push.forces, course.u, course.biases, course.C);
@@ -82,8 +85,8 @@ void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push
   addWanted(tree, course.factor, course.loop_rows, change);
 }
 
-void goByTheMiddle(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u, double h,
-                   TreeCourse& course) {
+void goByTheMiddle(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u,
+                   double h, TreeCourse& course) {
   std::copy(u.begin(), u.end(), course.u.begin());
   respond(tree, base, push, u, h, course, course.slope);
   addTimes(0.5, course.slope, course.u);
@@ -129,7 +132,8 @@ void lookAt(const TreeModel& tree, const TreeBase& base, const TreePush& push, d
   addWanted(tree, course.stage_factor, course.loop_rows, course.slope);
 }
 
-// How steps from the start change where the columns go by u: of a ball's three, theta' = u - theta x u/2 + theta x (theta x u)/12.
+// How steps from the start change where the columns go by u: of a ball's three, theta' =
+// u - theta x u/2 + theta x (theta x u)/12.
 void stepRates(const TreeModel& tree, std::span<const double> step, std::span<const double> u, std::span<double> out) {
   std::copy(u.begin(), u.end(), out.begin());
   for (const TreeLink& link : tree.links) {
@@ -142,7 +146,8 @@ void stepRates(const TreeModel& tree, std::span<const double> step, std::span<co
   }
 }
 
-// Steps of the free course that show how it turns. The base's middle is known, no other places between its start and end.
+// Steps of the free course that show how it turns. The base's middle is known,
+// no other places between its start and end.
 int fineSteps(const BaseCourse& base, double h, const TreeCourse& course) {
   constexpr int kMostSteps = 4;
   const auto stands = [](const Motion& m) { return m.v_W.isZero(0) && m.w_W.isZero(0); };
@@ -155,8 +160,8 @@ int fineSteps(const BaseCourse& base, double h, const TreeCourse& course) {
 }
 
 // One of `steps`, from what is in course.way_free and u_free on.
-void stepByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q, double h, int step,
-                      int steps, TreeCourse& course) {
+void stepByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                      double h, int step, int steps, TreeCourse& course) {
   const std::array<const TreeBase*, 4> bases{&base.start, &base.mid, &base.mid, &base.end};
   constexpr std::array kShares{0.0, 0.5, 0.5, 1.0};
   constexpr std::array kWeights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
@@ -216,8 +221,8 @@ TreeCourse::TreeCourse(const TreeModel& tree)
   shares.reserve(longest);
 }
 
-void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q, std::span<const double> u,
-                 double h, TreeCourse& course) {
+void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                 std::span<const double> u, double h, TreeCourse& course) {
   PINCER_ASSERT(h > 0 && push.drives.size() == tree.drives.size());
   for (std::size_t c = 0; c < u.size(); ++c) course.step[c] = 0.5 * h * u[c];
   growCoordinates(tree, q, course.step, course.q);
@@ -258,8 +263,9 @@ void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& ga
   }
 }
 
-void holdingImpulses(const TreeModel& tree, const TreeCourse& course, std::span<const double> u, std::span<const double> gained,
-                     std::span<const double> impulse, std::vector<double>& change, std::vector<double>& out) {
+void holdingImpulses(const TreeModel& tree, const TreeCourse& course, std::span<const double> u,
+                     std::span<const double> gained, std::span<const double> impulse, std::vector<double>& change,
+                     std::vector<double>& out) {
   for (std::size_t c = 0; c < u.size(); ++c) change[c] = course.u_free[c] + gained[c] - u[c];
   multiply(tree, course.inertia, change, out);
   for (std::size_t c = 0; c < u.size(); ++c) out[c] -= course.asked[c] + impulse[c];
@@ -271,7 +277,8 @@ double lengthOf(const TreeModel& tree, const TreeDrive& drive, std::span<const d
   return l;
 }
 
-void columnShares(const TreeModel& tree, const TreePlace& place, const TreeDrive& drive, std::vector<ColumnShare>& out) {
+void columnShares(const TreeModel& tree, const TreePlace& place, const TreeDrive& drive,
+                  std::vector<ColumnShare>& out) {
   out.clear();
   for (const TreeDrive::Term& term : drive.terms) {
     const int column = tree.coordinates[slot(term.coordinate)].column;

@@ -3,11 +3,12 @@
 //   q_m = q (+) h u/2: geometry, M, J;     u+ = u + Du;     q+ = q (+) h (u + u+)/2;     M^ = M + sum of c c^T m^
 //   M^ Du = h (tau - C(q_m, u + h a/2)) + p + J^T r,        M^ h a = h (tau - C(q_m, u)) + p
 //
-// q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h; tau of what is constant.
-// Loops are closed in all of these (loop_closure.h).
+// q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h;
+// tau of what is constant. Loops are closed in all of these (loop_closure.h).
 //
-// A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls by exponentials: H. Munthe-Kaas,
-// Appl. Numer. Math. 29 (1999) 115-127); on a base at rest in up to four steps, if a link turns by more than kFineTurn in one.
+// A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls
+// by exponentials: H. Munthe-Kaas, Appl. Numer. Math. 29 (1999) 115-127); on a base at rest in up to four steps, if a
+// link turns by more than kFineTurn in one.
 #pragma once
 #include <span>
 #include <vector>
@@ -76,14 +77,14 @@ struct TreeCourse {
 };
 
 // The free course of a tree that is at q (q_count) and goes by u (columns). Allocates nothing. h > 0.
-void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q, std::span<const double> u,
-                 double h, TreeCourse& course);
+void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                 std::span<const double> u, double h, TreeCourse& course);
 
 // Places and motions at the end of the free course, in `course.end`.
 void placeFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const double> q, TreeCourse& course);
 
-// How the tick went once impulses have changed the columns' rates at its end by `gained`. `closing`: all the way goes by the rates at the end, for
-// what lands.
+// How the tick went once impulses have changed the columns' rates at its end by `gained`. `closing`: all the way goes
+// by the rates at the end, for what lands.
 struct TreeGain {
   std::span<const double> gained{};
   double h = 0;
@@ -95,24 +96,28 @@ inline double wayOf(const TreeCourse& course, const TreeGain& gain, std::size_t 
   if (gained == 0) return course.way_free[column];
   return gain.h * (gain.closing ? u_end : 0.5 * (u + u_end));
 }
-// At `t` after the tick's start, 0 .. h: q and the columns' rates, places and motions in `course.end`. Neither `q_out` nor `u_out` may be `q` or `u`.
+// At `t` after the tick's start, 0 .. h: q and the columns' rates, places and motions in `course.end`.
+// Neither `q_out` nor `u_out` may be `q` or `u`.
 void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& gain, double t, std::span<const double> q,
                  std::span<const double> u, TreeCourse& course, std::span<double> q_out, std::span<double> u_out);
 
-// Impulse of an element along its length over the tick, where that goes by `rate_end` in the end [N s, N m s]; the drive's constant force comes on top.
+// Impulse of an element along its length over the tick, where that goes by `rate_end` in the end [N s, N m s];
+// the drive's constant force comes on top.
 inline double impulseOf(const ElementCourse& element, double rate_end) {
   return element.implied.impulse - element.implied.mass * (rate_end - element.rate);
 }
 
-// Impulses that hold the locked columns, by columns, where contacts and joints' rows gave `impulse` and changed the rates by `gained`:
-// M^ Du - h (tau - C) - p - J^T r.
-void holdingImpulses(const TreeModel& tree, const TreeCourse& course, std::span<const double> u, std::span<const double> gained,
-                     std::span<const double> impulse, std::vector<double>& change, std::vector<double>& out);
+// Impulses that hold the locked columns, by columns, where contacts and joints' rows gave `impulse` and changed the
+// rates by `gained`: M^ Du - h (tau - C) - p - J^T r.
+void holdingImpulses(const TreeModel& tree, const TreeCourse& course, std::span<const double> u,
+                     std::span<const double> gained, std::span<const double> impulse, std::vector<double>& change,
+                     std::vector<double>& out);
 
 // Length of a drive at q.
 double lengthOf(const TreeModel& tree, const TreeDrive& drive, std::span<const double> q);
 
-// How a drive's length changes with the columns' rates, at this place; `out` keeps its memory. Columns that two terms share stand once.
+// How a drive's length changes with the columns' rates, at this place; `out` keeps its memory.
+// Columns that two terms share stand once.
 void columnShares(const TreeModel& tree, const TreePlace& place, const TreeDrive& drive, std::vector<ColumnShare>& out);
 
 }  // namespace pincer::engine

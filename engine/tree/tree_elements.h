@@ -14,10 +14,11 @@ struct Element {
   const DriveTick& law;
 };
 
-// f(element, course) of each spring and damper of a joint, then of each drive, but of those that are a constant force at most.
+// f(element, course) of each spring and damper of a joint, then of each drive, but of
+// those that are a constant force at most.
 template <class F>
-void forEachElement(const TreeModel& tree, const TreePush& push, const TreePlace& place, std::span<const double> q, TreeCourse& course,
-                    F f) {
+void forEachElement(const TreeModel& tree, const TreePush& push, const TreePlace& place, std::span<const double> q,
+                    TreeCourse& course, F f) {
   for (std::size_t i = 0; i < tree.coordinates.size(); ++i) {
     const TreeCoordinate& own = tree.coordinates[i];
     if (!(own.damping > 0 || own.traits.stiffness > 0)) continue;

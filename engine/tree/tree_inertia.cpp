@@ -22,7 +22,8 @@ void addShifted(const CompositeInertia& part, const Vec3& d, CompositeInertia& s
   const Mat3 across = part.first * d.transpose();
   sum.mass += part.mass;
   sum.first += part.first + part.mass * d;
-  sum.second += part.second + spread(part.mass, d) + 2 * across.trace() * Mat3::Identity() - across - across.transpose();
+  sum.second +=
+      part.second + spread(part.mass, d) + 2 * across.trace() * Mat3::Identity() - across - across.transpose();
 }
 
 // Momentum of a unit of the coordinate's rate: linear, and about the joint.
@@ -43,7 +44,8 @@ void addToColumns(const TreeModel& tree, int a, int b, double value, std::span<d
 }
 
 // Row of coordinate j: what each coordinate on its way to the base feels of it.
-void addCoordinate(const TreeModel& tree, const TreePlace& place, std::size_t j, const CompositeInertia& inertia, std::span<double> M) {
+void addCoordinate(const TreeModel& tree, const TreePlace& place, std::size_t j, const CompositeInertia& inertia,
+                   std::span<double> M) {
   const TreeCoordinate& own = tree.coordinates[j];
   const int link = own.link;
   const CoordinatePlace& moved = place.coordinates[j];
@@ -65,13 +67,16 @@ void addCoordinate(const TreeModel& tree, const TreePlace& place, std::size_t j,
 
 }  // namespace
 
-void fillInertia(const TreeModel& tree, const TreePlace& place, std::span<CompositeInertia> composite, std::span<double> M) {
+void fillInertia(const TreeModel& tree, const TreePlace& place, std::span<CompositeInertia> composite,
+                 std::span<double> M) {
   std::fill(M.begin(), M.end(), 0.0);
   for (std::size_t l = 0; l < tree.links.size(); ++l) composite[l] = ownInertia(tree.links[l], place.links[l]);
   for (std::size_t l = tree.links.size(); l-- > 0;) {
     const TreeLink& link = tree.links[l];
-    for (int k = 0; k < coordinatesOf(link.kind); ++k) addCoordinate(tree, place, slot(link.first_v + k), composite[l], M);
-    if (link.parent >= 0) addShifted(composite[l], place.links[l].p_OJ - place.links[slot(link.parent)].p_OJ, composite[slot(link.parent)]);
+    for (int k = 0; k < coordinatesOf(link.kind); ++k)
+      addCoordinate(tree, place, slot(link.first_v + k), composite[l], M);
+    if (link.parent >= 0)
+      addShifted(composite[l], place.links[l].p_OJ - place.links[slot(link.parent)].p_OJ, composite[slot(link.parent)]);
   }
 }
 

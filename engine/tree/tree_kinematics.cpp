@@ -65,11 +65,13 @@ void placeLinks(const TreeModel& tree, const TreeBase& base, std::span<const dou
   for (std::size_t i = 0; i < tree.coordinates.size(); ++i) {
     const TreeCoordinate& coordinate = tree.coordinates[i];
     if (coordinate.leader < 0) continue;
-    place.coordinates[i].share = follow(coordinate.polynomial, q[slot(tree.coordinates[slot(coordinate.leader)].q)]).slope;
+    place.coordinates[i].share =
+        follow(coordinate.polynomial, q[slot(tree.coordinates[slot(coordinate.leader)].q)]).slope;
   }
 }
 
-void moveLinks(const TreeModel& tree, const TreeBase& base, std::span<const double> q, std::span<const double> u, TreePlace& place) {
+void moveLinks(const TreeModel& tree, const TreeBase& base, std::span<const double> q, std::span<const double> u,
+               TreePlace& place) {
   for (std::size_t i = 0; i < tree.coordinates.size(); ++i) {
     const TreeCoordinate& coordinate = tree.coordinates[i];
     if (coordinate.leader < 0) continue;
@@ -94,9 +96,12 @@ void moveLinks(const TreeModel& tree, const TreeBase& base, std::span<const doub
   }
 }
 
-Pose linkPose(const TreePlace& place, int link) { return {place.links[slot(link)].q_WL, place.p_WO + place.links[slot(link)].p_OL}; }
+Pose linkPose(const TreePlace& place, int link) {
+  return {place.links[slot(link)].q_WL, place.p_WO + place.links[slot(link)].p_OL};
+}
 
-void growCoordinates(const TreeModel& tree, std::span<const double> q, std::span<const double> step, std::span<double> out) {
+void growCoordinates(const TreeModel& tree, std::span<const double> q, std::span<const double> step,
+                     std::span<double> out) {
   for (const TreeLink& link : tree.links) {
     if (link.kind == JointKind::kWeld) continue;
     const double* const from = &q[slot(link.first_q)];
@@ -105,14 +110,17 @@ void growCoordinates(const TreeModel& tree, std::span<const double> q, std::span
       to[0] = from[0] + step[slot(tree.coordinates[slot(link.first_v)].column)];
       continue;
     }
-    const double* const turn = &step[slot(tree.coordinates[slot(link.first_v)].column)];  // a ball's columns are neighbours
-    const Quat grown = (quatFromRotationVector({turn[0], turn[1], turn[2]}) * Quat(from[0], from[1], from[2], from[3])).normalized();
+    // a ball's columns are neighbours
+    const double* const turn = &step[slot(tree.coordinates[slot(link.first_v)].column)];
+    const Quat grown =
+        (quatFromRotationVector({turn[0], turn[1], turn[2]}) * Quat(from[0], from[1], from[2], from[3])).normalized();
     to[0] = grown.w(), to[1] = grown.x(), to[2] = grown.y(), to[3] = grown.z();
   }
   if (!tree.has_couplings) return;
   for (const TreeCoordinate& coordinate : tree.coordinates) {
     if (coordinate.leader < 0) continue;
-    out[slot(coordinate.q)] = follow(coordinate.polynomial, out[slot(tree.coordinates[slot(coordinate.leader)].q)]).value;
+    out[slot(coordinate.q)] =
+        follow(coordinate.polynomial, out[slot(tree.coordinates[slot(coordinate.leader)].q)]).value;
   }
 }
 
@@ -124,15 +132,16 @@ void ratesOfCoordinates(const TreeModel& tree, const TreePlace& place, std::span
   for (std::size_t i = 0; i < v.size(); ++i) v[i] = place.coordinates[i].share * u[slot(tree.coordinates[i].column)];
 }
 
-void addJacobian(const TreeModel& tree, const TreePlace& place, int link, const Vec3& p_OX, const Vec3& n_W, const Vec3& m_W,
-                 std::span<double> J) {
+void addJacobian(const TreeModel& tree, const TreePlace& place, int link, const Vec3& p_OX, const Vec3& n_W,
+                 const Vec3& m_W, std::span<double> J) {
   forEachCoordinateOf(tree, link, [&](std::size_t i) {
     const Motion unit = unitMotion(tree, place, i, p_OX);
     J[slot(tree.coordinates[i].column)] += place.coordinates[i].share * (n_W.dot(unit.v_W) + m_W.dot(unit.w_W));
   });
 }
 
-void addWrench(const TreeModel& tree, const TreePlace& place, int link, const Vec3& f_W, const Vec3& moment_W, std::span<double> impulse) {
+void addWrench(const TreeModel& tree, const TreePlace& place, int link, const Vec3& f_W, const Vec3& moment_W,
+               std::span<double> impulse) {
   addJacobian(tree, place, link, place.links[slot(link)].p_OL, f_W, moment_W, impulse);
 }
 

@@ -41,12 +41,14 @@ struct TreePlace {
 // Places, axes and shares at q (q_count).
 void placeLinks(const TreeModel& tree, const TreeBase& base, std::span<const double> q, TreePlace& place);
 // Motions, and how shares change, at the columns' rates u. After placeLinks at the same q.
-void moveLinks(const TreeModel& tree, const TreeBase& base, std::span<const double> q, std::span<const double> u, TreePlace& place);
+void moveLinks(const TreeModel& tree, const TreeBase& base, std::span<const double> q, std::span<const double> u,
+               TreePlace& place);
 
 Pose linkPose(const TreePlace& place, int link);  // X_WL
 
 // q + step by columns: a ball turns by its three, what follows another one follows. `q` and `out` may be the same.
-void growCoordinates(const TreeModel& tree, std::span<const double> q, std::span<const double> step, std::span<double> out);
+void growCoordinates(const TreeModel& tree, std::span<const double> q, std::span<const double> step,
+                     std::span<double> out);
 
 // Columns' rates of those of coordinates, and back; the latter after placeLinks.
 void ratesOfColumns(const TreeModel& tree, std::span<const double> v, std::span<double> u);
@@ -70,10 +72,11 @@ void forEachCoordinateOf(const TreeModel& tree, int link, F f) {
 }
 
 // J += n . v at p_OX plus m . w of a link, by columns; nothing but those on the path of the link's tip changes.
-void addJacobian(const TreeModel& tree, const TreePlace& place, int link, const Vec3& p_OX, const Vec3& n_W, const Vec3& m_W,
-                 std::span<double> J);
+void addJacobian(const TreeModel& tree, const TreePlace& place, int link, const Vec3& p_OX, const Vec3& n_W,
+                 const Vec3& m_W, std::span<double> J);
 
 // impulse += J^T of an impulse through a link's centre of mass and one that turns it, by columns.
-void addWrench(const TreeModel& tree, const TreePlace& place, int link, const Vec3& f_W, const Vec3& moment_W, std::span<double> impulse);
+void addWrench(const TreeModel& tree, const TreePlace& place, int link, const Vec3& f_W, const Vec3& moment_W,
+               std::span<double> impulse);
 
 }  // namespace pincer::engine

@@ -45,7 +45,8 @@ std::vector<Columns> columnsOfLinks(const TreeModel& tree) {
   for (std::size_t l = 0; l < tree.links.size(); ++l) {
     const TreeLink& link = tree.links[l];
     if (link.parent != kNobody) moving[l] = moving[slot(link.parent)];
-    for (int k = 0; k < coordinatesOf(link.kind); ++k) moving[l].insert(tree.coordinates[slot(link.first_v + k)].column);
+    for (int k = 0; k < coordinatesOf(link.kind); ++k)
+      moving[l].insert(tree.coordinates[slot(link.first_v + k)].column);
   }
   return moving;
 }
@@ -90,8 +91,8 @@ void findPaths(TreeModel& tree, std::vector<Columns> seen) {
   }
 }
 
-// Runs of freedoms without a branch (those of a tree with loops are one), cut after as many as a mover has. A run's columns needn't be neighbours by number: what lies between belongs
-// to another branch; they are put in order first.
+// Runs of freedoms without a branch (those of a tree with loops are one), cut after as many as a mover has. A run's
+// columns needn't be neighbours by number: what lies between belongs to another branch; they are put in order first.
 void findBlocks(TreeModel& tree) {
   const std::size_t n = tree.before.size();
   std::vector<int> children(n, 0);
@@ -104,7 +105,8 @@ void findBlocks(TreeModel& tree) {
   for (std::size_t c = 0; c < slot(tree.freedomCount()); ++c) {
     const int before = tree.before[c];
     const int inner = before == kNobody ? kNobody : tree.block_of[slot(before)];
-    const bool goes_on = before != kNobody && children[slot(before)] == 1 && tree.blocks[slot(inner)].count < kMoverFreedoms;
+    const bool goes_on =
+        before != kNobody && children[slot(before)] == 1 && tree.blocks[slot(inner)].count < kMoverFreedoms;
     if (!goes_on) {
       tree.blocks.push_back({static_cast<int>(c), 0, inner});
     }

@@ -16,8 +16,8 @@
 namespace pincer::engine {
 namespace {
 
-void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& impulse_W, const Vec3& moment_W,
-                  const Contact& c) {
+void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& impulse_W,
+                  const Vec3& moment_W, const Contact& c) {
   const auto push = [&](MoverScratch& mover) {
     mover.impulse_W += impulse_W;
     mover.rest_speed = mover.touched ? std::min(mover.rest_speed, c.rest_speed) : c.rest_speed;
@@ -45,7 +45,8 @@ void rest(MoverScratch& mover) {
 constexpr double kLargestMismatch = 1e-6;  // between the ways of two bodies that touch [m]
 constexpr int kMostSpreads = 40;           // along the contacts, to and fro
 
-// How far apart the mean of its velocities and the one at the end take a free body along n_W in this part of the tick [m].
+// How far apart the mean of its velocities and the one at the end take a free
+// body along n_W in this part of the tick [m].
 double mismatchOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, const Vec3& n_W) {
   if (side.kind != SideKind::kBody || !model.bodies[side.index].dynamic || isJoined(model.bodies[side.index])) return 0;
   const Vec3 jump_W = endVelocity(model, scratch, side.index) - scratch.bodies[side.index].start.v_W;
@@ -59,10 +60,12 @@ bool spreadClosing(const WorldModel& model, const Contact& c, WorldScratch& scra
   return scratch.bodies[side.index].closing = true;
 }
 
-// A landing body goes by its velocity at the end, and so must one that it stops in turn, or they would end in each other by half of the way that was stopped.
+// A landing body goes by its velocity at the end, and so must one that it stops in turn, or they would end in each
+// other by half of the way that was stopped.
 void spreadClosing(const WorldModel& model, WorldScratch& scratch) {
   std::vector<Contact>& contacts = scratch.contacts;
-  bool spreads = std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.active() && c.closing; });
+  bool spreads =
+      std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.active() && c.closing; });
   for (int n = 0; spreads && n < kMostSpreads; ++n) {
     spreads = false;
     for (std::size_t k = 0; k < contacts.size(); ++k)
@@ -165,7 +168,8 @@ void advanceTurn(double h, PointScratch& scratch, PointState& s) {
     return;
   }
   const Vec3 told_W = h * scratch.told_w_W;
-  s.turn_W = rotationVectorOf(quatFromRotationVector(told_W + way_W) * quatFromRotationVector(s.turn_W) * quatFromRotationVector(-told_W));
+  s.turn_W = rotationVectorOf(quatFromRotationVector(told_W + way_W) * quatFromRotationVector(s.turn_W) *
+                              quatFromRotationVector(-told_W));
 }
 
 // In axes of the coupling that aren't the world's; none of them is locked.
@@ -193,7 +197,8 @@ void advancePoint(const std::array<AxisForm, 3>& forms, double h, PointScratch& 
   }
   s.p_target_W = scratch.p_target_W;
   s.v_target_W = scratch.v_target_W;
-  // A body that moved by its end velocity alone begins the next tick so too: half of each, for a tip without mass nor damping, diverges.
+  // A body that moved by its end velocity alone begins the next tick so too: half of each, for
+  // a tip without mass nor damping, diverges.
   s.touching = scratch.touched && !scratch.closing;
 }
 
@@ -211,7 +216,8 @@ void advance(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
       advanceBody(body, h, scratch.bodies[i], state.bodies[i]);
       scratch.still_bodies += scratch.bodies[i].still;
     }
-    if (body.driven) advanceDriven(scratch.bodies[i], state.bodies[i], state.driven_w_W[static_cast<std::size_t>(body.motion)]);
+    if (body.driven)
+      advanceDriven(scratch.bodies[i], state.bodies[i], state.driven_w_W[static_cast<std::size_t>(body.motion)]);
   }
   for (std::size_t i = 0; i < model.points.size(); ++i) {
     advancePoint(model.point_forms[i], h, scratch.points[i], state.points[i]);

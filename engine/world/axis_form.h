@@ -1,7 +1,7 @@
 // axis_form: which form the spring-damper of a driven point's axis takes, once for all ticks of one length.
 //
-// Fox and Goodwin's quadrature (predict.cpp) is stable up to omega h = sqrt(6); half of the first axis' own limit leaves room for what the
-// contact adds. Beyond, the force is that at the end of the tick.
+// Fox and Goodwin's quadrature (predict.cpp) is stable up to omega h = sqrt(6); half of the first axis' own limit
+// leaves room for what the contact adds. Beyond, the force is that at the end of the tick.
 #pragma once
 #include <array>
 

@@ -46,18 +46,19 @@ std::vector<double> massesOf(const BodySpec& spec, double mass) {
   const double left = mass - given;
   const bool fits = volume > 0 ? left > 0 : std::abs(left) <= kRoundOff * mass;
   if (!fits)
-    throw InputError(
-        fmt::format("body \"{}\": its shapes' masses come to {:g} kg, its own is {:g}. Leave one of them out, or let what is "
-                    "left be positive for shapes without a mass.",
-                    spec.name, given, mass));
+    throw InputError(fmt::format(
+        "body \"{}\": its shapes' masses come to {:g} kg, its own is {:g}. Leave one of them out, or let what is "
+        "left be positive for shapes without a mass.",
+        spec.name, given, mass));
   std::vector<double> masses;
-  for (const ColliderSpec& shape : spec.shapes) masses.push_back(shape.mass > 0 ? shape.mass : left * volumeOf(shape.shape) / volume);
+  for (const ColliderSpec& shape : spec.shapes)
+    masses.push_back(shape.mass > 0 ? shape.mass : left * volumeOf(shape.shape) / volume);
   return masses;
 }
 
 double totalMass(const BodySpec& spec) {
-  const bool has_each =
-      !spec.shapes.empty() && std::all_of(spec.shapes.begin(), spec.shapes.end(), [](const auto& s) { return s.mass > 0; });
+  const bool has_each = !spec.shapes.empty() &&
+                        std::all_of(spec.shapes.begin(), spec.shapes.end(), [](const auto& s) { return s.mass > 0; });
   if (spec.mass != 0 || !has_each) return spec.mass;
   double sum = 0;
   for (const ColliderSpec& shape : spec.shapes) sum += shape.mass;
@@ -67,8 +68,9 @@ double totalMass(const BodySpec& spec) {
 void checkInertia(const BodySpec& spec) {
   const GivenInertia& given = *spec.inertia;
   if (!given.p_BBcm.allFinite() || !given.I_BBcm.allFinite() || !isSymmetric(given.I_BBcm))
-    throw InputError(
-        fmt::format("body \"{}\": its inertia isn't finite and symmetric. Give the full tensor about the centre of mass.", spec.name));
+    throw InputError(fmt::format(
+        "body \"{}\": its inertia isn't finite and symmetric. Give the full tensor about the centre of mass.",
+        spec.name));
   try {
     static_cast<void>(principalInertia({1, given.p_BBcm, given.I_BBcm}));
   } catch (const InputError& error) {
@@ -103,7 +105,8 @@ void setInertia(const BodySpec& spec, BodyModel& body) {
   body.rotation = FreeRotation(inertia.moments);
 }
 
-// Of a homogeneous solid: a slab's half thickness is the root of three times the mean square distance from its middle plane.
+// Of a homogeneous solid: a slab's half thickness is the root of three times the
+// mean square distance from its middle plane.
 double innerRadius(const contact::Shape& shape) {
   if (isSupport(shape)) return std::numeric_limits<double>::infinity();
   const Vec3 moments = principalInertia(massPropertiesOf(shape, 1)).moments;
@@ -119,8 +122,8 @@ void setExtent(const std::vector<ColliderModel>& colliders, BodyModel& body) {
     body.bounding_radius = std::max(body.bounding_radius, c.bounding_radius + distance);
     body.inner_radius = std::min(body.inner_radius, innerRadius(c.shape));
     is_round = is_round && (isSupport(c.shape) || is_ball);
-    body.may_be_hollow =
-        body.may_be_hollow || std::holds_alternative<contact::Mesh>(c.shape) || std::holds_alternative<contact::Dish>(c.shape);
+    body.may_be_hollow = body.may_be_hollow || std::holds_alternative<contact::Mesh>(c.shape) ||
+                         std::holds_alternative<contact::Dish>(c.shape);
   }
   body.may_be_hollow = body.may_be_hollow || colliders.size() > 1;
   body.corner_reach = is_round ? 0 : std::max(body.bounding_radius - body.inner_radius, 0.0);
@@ -134,13 +137,15 @@ void requireRange(const std::string& what, double value, double low, double high
 }
 
 void checkMaterial(const std::string& body, const Material& m) {
-  requireRange(body + ".material.mu_s", m.mu_s, 0, kLargest, "A friction coefficient can't be negative; typical: skin on plastic 0.6.");
+  requireRange(body + ".material.mu_s", m.mu_s, 0, kLargest,
+               "A friction coefficient can't be negative; typical: skin on plastic 0.6.");
   requireRange(body + ".material.mu_d", m.mu_d, 0, m.mu_s, "Dynamic friction lies between 0 and static friction mu_s.");
   requireRange(body + ".material.restitution", m.restitution, 0, 1, "0 doesn't bounce, 1 keeps all speed.");
   requireRange(body + ".material.torsion_radius", m.torsion_radius, 0, 1,
                "It is about two thirds of the contact patch's radius: a few mm.");
-  requireRange(body + ".material.rolling_radius", m.rolling_radius, 0, 1,
-               "Friction times it is the arm of the force that resists rolling: a hundredth to a tenth of a ball's radius.");
+  requireRange(
+      body + ".material.rolling_radius", m.rolling_radius, 0, 1,
+      "Friction times it is the arm of the force that resists rolling: a hundredth to a tenth of a ball's radius.");
   requireRange(body + ".material.stribeck_speed", m.stribeck_speed, 0, 100,
                "In m/s; 0 if friction doesn't change with speed, else about 0.01.");
 }
@@ -154,7 +159,8 @@ std::vector<ColliderModel> collidersFor(const BodySpec& spec, int number) {
   std::vector<ColliderModel> colliders;
   for (const ColliderSpec& shape : spec.shapes) {
     checkShape(spec.name, shape);
-    ColliderModel& collider = colliders.emplace_back(colliderOf(shape.name, shape.shape, shape.material.value_or(spec.material), number));
+    ColliderModel& collider =
+        colliders.emplace_back(colliderOf(shape.name, shape.shape, shape.material.value_or(spec.material), number));
     collider.X_BS = shape.X_BS;
     collider.is_posed = !(shape.X_BS.p.isZero(0) && shape.X_BS.q.vec().isZero(0));
     collider.bits = shape.bits;
@@ -162,7 +168,8 @@ std::vector<ColliderModel> collidersFor(const BodySpec& spec, int number) {
   if (colliders.empty()) colliders.push_back(colliderOf(spec.name, spec.shape, spec.material, number));
   const auto is_support = [](const ColliderModel& c) { return isSupport(c.shape); };
   if (spec.dynamic && std::any_of(colliders.begin(), colliders.end(), is_support))
-    throw InputError(fmt::format("body \"{}\": half-spaces and dishes have no mass and can't move. Make it static.", spec.name));
+    throw InputError(
+        fmt::format("body \"{}\": half-spaces and dishes have no mass and can't move. Make it static.", spec.name));
   return colliders;
 }
 
@@ -170,7 +177,8 @@ BodyModel bodyFor(const BodySpec& spec, const std::vector<ColliderModel>& collid
   BodyModel body;
   body.name = spec.name;
   body.collider_count = static_cast<int>(colliders.size());
-  body.is_plane = colliders.size() == 1 && std::holds_alternative<contact::HalfSpace>(colliders[0].shape) && !colliders[0].is_posed;
+  body.is_plane =
+      colliders.size() == 1 && std::holds_alternative<contact::HalfSpace>(colliders[0].shape) && !colliders[0].is_posed;
   body.dynamic = spec.dynamic;
   body.driven = spec.driven;
   if (spec.dynamic) setInertia(spec, body);

@@ -11,8 +11,9 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kTreeMargin = 5e-4;  // by which the tree's boxes are larger [m]; Bullet's own 50 mm is for rooms, not for hands
-constexpr int kPairsPerBody = 16;     // for which memory is there from the start
+// by which the tree's boxes are larger [m]; Bullet's own 50 mm is for rooms, not for hands
+constexpr double kTreeMargin = 5e-4;
+constexpr int kPairsPerBody = 16;  // for which memory is there from the start
 
 bool isBounded(const BodyModel& body) { return body.bounding_radius < 1e9; }
 
@@ -22,7 +23,8 @@ struct Box {
 
 Box boxOf(const WorldModel& model, const WorldScratch& scratch, int body) {
   const BodyScratch& s = scratch.bodies[body];
-  const double reach = model.bodies[body].bounding_radius + 0.5 * model.options.contact_margin + model.options.h * s.start.v_W.norm();
+  const double reach =
+      model.bodies[body].bounding_radius + 0.5 * model.options.contact_margin + model.options.h * s.start.v_W.norm();
   const Vec3 low = s.X_WI_mid.p - Vec3::Constant(reach), high = s.X_WI_mid.p + Vec3::Constant(reach);
   return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
@@ -89,7 +91,8 @@ BroadPhase::BroadPhase(const WorldModel& model) : tree_((contact::letBulletThrow
     if (model.bodies[i].dynamic) dynamic_.push_back(static_cast<int>(i));
     if (!isBounded(model.bodies[i])) unbounded_.push_back(static_cast<int>(i));
   }
-  for (std::vector<BodyPair>* pairs : {&pairs_, &sorted_}) pairs->reserve((kPairsPerBody + unbounded_.size()) * model.bodies.size());
+  for (std::vector<BodyPair>* pairs : {&pairs_, &sorted_})
+    pairs->reserve((kPairsPerBody + unbounded_.size()) * model.bodies.size());
   first_.resize(model.bodies.size() + 1);
   near_.reserve(model.bodies.size());
 }
@@ -137,7 +140,8 @@ struct NearBodies final : btBroadphaseAabbCallback {
 
 }  // namespace
 
-// The tree's boxes lie about the present ones and depend on the past; what is looked at beyond reach changes nothing but trackers that are reset.
+// The tree's boxes lie about the present ones and depend on the past; what is looked at beyond reach
+// changes nothing but trackers that are reset.
 std::span<const int> BroadPhase::bodiesNear(const Vec3& p_W, double reach) {
   near_.assign(unbounded_.begin(), unbounded_.end());
   const btVector3 centre(p_W.x(), p_W.y(), p_W.z()), half(reach, reach, reach);
@@ -159,12 +163,14 @@ std::span<const int> BroadPhase::bodiesNear(const Vec3& p_W, double reach) {
 
 // Counts and places, keeping the order of equals: a third of the time of comparing.
 void BroadPhase::sortBy(int BodyPair::*key) {
-  PINCER_ASSERT(std::all_of(pairs_.begin(), pairs_.end(), [&](const BodyPair& p) { return isIndex(p.*key, first_.size() - 1); }));
+  PINCER_ASSERT(
+      std::all_of(pairs_.begin(), pairs_.end(), [&](const BodyPair& p) { return isIndex(p.*key, first_.size() - 1); }));
   std::fill(first_.begin(), first_.end(), 0);
   for (const BodyPair& pair : pairs_) ++first_[static_cast<std::size_t>(pair.*key) + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
   sorted_.resize(pairs_.size());
-  for (const BodyPair& pair : pairs_) sorted_[static_cast<std::size_t>(first_[static_cast<std::size_t>(pair.*key)]++)] = pair;
+  for (const BodyPair& pair : pairs_)
+    sorted_[static_cast<std::size_t>(first_[static_cast<std::size_t>(pair.*key)]++)] = pair;
   pairs_.swap(sorted_);
 }
 

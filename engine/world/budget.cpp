@@ -11,8 +11,8 @@ bool isDriven(const WorldModel& model, const WorldScratch& scratch) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.bodies[i].driven && scratch.bodies[i].touched) return true;
   }
-  return !scratch.forces.empty() ||
-         std::any_of(scratch.points.begin(), scratch.points.end(), [](const PointScratch& point) { return point.touched; });
+  return !scratch.forces.empty() || std::any_of(scratch.points.begin(), scratch.points.end(),
+                                                [](const PointScratch& point) { return point.touched; });
 }
 
 bool isPushed(const WorldModel& model, const WorldScratch& scratch, std::size_t body) {
@@ -26,14 +26,16 @@ bool isPushed(const WorldModel& model, const WorldScratch& scratch, std::size_t 
 
 double kineticEnergyOf(const WorldModel& model, const WorldState& state, std::size_t i) {
   const BodyState& s = state.bodies[i];
-  return 0.5 * (model.bodies[i].mass * s.v_W.squaredNorm() + s.L_W.dot(bodyAngularVelocity(model, state, static_cast<int>(i))));
+  return 0.5 * (model.bodies[i].mass * s.v_W.squaredNorm() +
+                s.L_W.dot(bodyAngularVelocity(model, state, static_cast<int>(i))));
 }
 
 }  // namespace
 
 void chargeQuery(const ColliderModel& a, const ColliderModel& b, WorldScratch& scratch) {
   constexpr std::int64_t kOfSphere = 200, kOfSolids = 5000;
-  const bool has_sphere = std::holds_alternative<contact::Sphere>(a.shape) || std::holds_alternative<contact::Sphere>(b.shape);
+  const bool has_sphere =
+      std::holds_alternative<contact::Sphere>(a.shape) || std::holds_alternative<contact::Sphere>(b.shape);
   charge(has_sphere ? kOfSphere : kOfSolids, scratch);
 }
 

@@ -1,7 +1,8 @@
 // budget: what a tick spends of solver.budget besides its solves, and what it does once that has run out.
 //
-// Counted in multiplications, not measured (solve/solver_scratch.h); scratch.operations_left below 0 is spent. Then what is left of the tick is done in one
-// part, however far bodies turn in it, with impulses that are best iterates: its answer is flagged, and must not have more energy than there was.
+// Counted in multiplications, not measured (solve/solver_scratch.h); scratch.operations_left below 0 is spent. Then
+// what is left of the tick is done in one part, however far bodies turn in it, with impulses that are best iterates:
+// its answer is flagged, and must not have more energy than there was.
 #pragma once
 #include "pincer/engine/world/scratch.h"
 
@@ -13,8 +14,8 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
   if (isLimited(scratch)) scratch.operations_left -= operations;
 }
 
-// Work that solves of hits may take in a tick, per contact: some 100 sweeps. Beyond, no further hit cuts the tick, and each of four solves ends
-// with a quarter of it: the best iterate counts, flagged.
+// Work that solves of hits may take in a tick, per contact: some 100 sweeps. Beyond, no further hit cuts the tick, and
+// each of four solves ends with a quarter of it: the best iterate counts, flagged.
 constexpr std::int64_t kHitOperations = 24'000;
 inline bool haveHitsSpent(const WorldScratch& scratch) {
   return scratch.hit_operations > kHitOperations * static_cast<std::int64_t>(scratch.contacts.size());
@@ -26,8 +27,8 @@ void chargeQuery(const ColliderModel& a, const ColliderModel& b, WorldScratch& s
 // Kinetic and potential energy of all bodies in this gravity [J].
 double energyOf(const WorldModel& model, const WorldState& state, const Vec3& gravity_W);
 
-// Slows the bodies on which contacts push, and those joined to them, all by one factor, until the energy is `most` [J] at most, or they stand. Not where
-// a finger, a driven body or an applied force pushes: those may do work.
+// Slows the bodies on which contacts push, and those joined to them, all by one factor, until the energy is `most` [J]
+// at most, or they stand. Not where a finger, a driven body or an applied force pushes: those may do work.
 void limitEnergy(const WorldModel& model, const WorldScratch& scratch, double most, WorldState& state);
 
 }  // namespace pincer::engine

@@ -12,7 +12,8 @@ namespace pincer::engine {
 namespace {
 
 // True if `plane` is a half-space that is further than `margin` from b's bounding sphere.
-bool isOver(const BodyModel& plane, const BodyModel& b, const BodyScratch& s_plane, const BodyScratch& sb, double margin) {
+bool isOver(const BodyModel& plane, const BodyModel& b, const BodyScratch& s_plane, const BodyScratch& sb,
+            double margin) {
   return plane.is_plane && s_plane.R_WB_mid.col(2).dot(sb.X_WI_mid.p - s_plane.X_WB_mid.p) > b.bounding_radius + margin;
 }
 
@@ -26,7 +27,8 @@ double cornerSpeed(const BodyModel& body, const BodyScratch& s) {
   return body.corner_reach > 0 ? body.corner_reach * s.start.w_W.norm() : 0;
 }
 
-// Of the first contact that the two shapes had in the last tick; zero if they had none, or for spheres, which need none.
+// Of the first contact that the two shapes had in the last tick; zero if they
+// had none, or for spheres, which need none.
 Vec3 lastNormal(const WorldModel& model, const WorldState& state, const ColliderModel& a, const ColliderModel& b) {
   if (isSphere(a) || isSphere(b)) return Vec3::Zero();
   const std::uint64_t first = contactId(model.shape_bits, sideOf(model, a), sideOf(model, b), 0);
@@ -53,8 +55,8 @@ void addPoints(const WorldModel& model, const ColliderModel& a, const ColliderMo
 }
 
 // material  of the pair, null where it is combined once two shapes touch;   found  working memory
-void collidePair(const WorldModel& model, const WorldState& state, const BodyPair& pair, const Material* material, double h,
-                 contact::PairPoints& found, WorldScratch& scratch) {
+void collidePair(const WorldModel& model, const WorldState& state, const BodyPair& pair, const Material* material,
+                 double h, contact::PairPoints& found, WorldScratch& scratch) {
   if (isIdle(scratch, pair.a) && isIdle(scratch, pair.b)) return;
   PINCER_ASSERT(pair.a < pair.b);
   PINCER_ASSERT(model.bodies[pair.a].dynamic || model.bodies[pair.b].dynamic);
@@ -63,12 +65,14 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   // A gap that closes within the tick must be seen at its middle: the far end of a sheet that slaps down as well.
   const double speed = (sa.start.v_W - sb.start.v_W).norm();
   const double turning = model.has_corners ? cornerSpeed(a, sa) + cornerSpeed(b, sb) : 0;
-  const double margin = model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
+  const double margin =
+      model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   noteFastPair(model, pair.a, pair.b, scratch);
   const auto collide = [&](const ColliderModel& ca, const Pose& X_WA, const ColliderModel& cb, const Pose& X_WB) {
     chargeQuery(ca, cb, scratch);
-    contact::collideShapes(ca.shape, X_WA, cb.shape, X_WB, margin, scratch.patches, found, lastNormal(model, state, ca, cb));
+    contact::collideShapes(ca.shape, X_WA, cb.shape, X_WB, margin, scratch.patches, found,
+                           lastNormal(model, state, ca, cb));
     if (found.count > 0) addPoints(model, ca, cb, material ? *material : materialOf(model, ca, cb), found, scratch);
   };
   const std::size_t first = scratch.contacts.size();
@@ -86,7 +90,8 @@ void collideBodies(const WorldModel& model, const WorldState& state, WorldScratc
     collidePair(model, state, {pair.a, pair.b}, material, h, found, scratch);
   }
   if (!scratch.broad_phase) return;
-  for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch)) collidePair(model, state, pair, nullptr, h, found, scratch);
+  for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch))
+    collidePair(model, state, pair, nullptr, h, found, scratch);
 }
 
 }  // namespace pincer::engine

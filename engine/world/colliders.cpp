@@ -6,7 +6,8 @@ namespace pincer::engine {
 namespace {
 
 // True if `other` lies further than `margin` above `plane`.
-bool isAbove(const ColliderModel& plane, const Pose& X_WPlane, const ColliderModel& other, const Vec3& p_W, double margin) {
+bool isAbove(const ColliderModel& plane, const Pose& X_WPlane, const ColliderModel& other, const Vec3& p_W,
+             double margin) {
   return isPlane(plane) && (X_WPlane.q * Vec3::UnitZ()).dot(p_W - X_WPlane.p) > other.bounding_radius + margin;
 }
 
@@ -15,7 +16,8 @@ bool isAbove(const ColliderModel& plane, const Pose& X_WPlane, const ColliderMod
 bool mayTouch(const WorldModel& model, int a, int b) {
   const auto shapes_a = collidersOf(model, model.bodies[a]), shapes_b = collidersOf(model, model.bodies[b]);
   return std::any_of(shapes_a.begin(), shapes_a.end(), [&](const ColliderModel& x) {
-    return std::any_of(shapes_b.begin(), shapes_b.end(), [&](const ColliderModel& y) { return mayTouch(x.bits, y.bits); });
+    return std::any_of(shapes_b.begin(), shapes_b.end(),
+                       [&](const ColliderModel& y) { return mayTouch(x.bits, y.bits); });
   });
 }
 

@@ -20,13 +20,16 @@ struct Side {
   int index = 0;
 };
 inline Side sideOf(const WorldModel& model, const ColliderModel& collider) {
-  const auto shape = static_cast<std::uint16_t>(&collider - model.colliders.data() - model.bodies[collider.body].first_collider);
+  const auto shape =
+      static_cast<std::uint16_t>(&collider - model.colliders.data() - model.bodies[collider.body].first_collider);
   return {SideKind::kBody, shape, collider.body};
 }
-inline bool isSame(const Side& x, const Side& y) { return x.kind == y.kind && x.index == y.index; }  // whichever shape of it
+// whichever shape of it
+inline bool isSame(const Side& x, const Side& y) { return x.kind == y.kind && x.index == y.index; }
 
-// A contact of this tick: n_W points out of b towards a. All geometry is that of the predicted middle of the tick. Each group of fields has one that
-// fills it, in this order; until then they are without a value. Rows of vectors that the contact doesn't have stay so.
+// A contact of this tick: n_W points out of b towards a. All geometry is that of the predicted middle of the
+// tick. Each group of fields has one that fills it, in this order; until then they are without a value. Rows of
+// vectors that the contact doesn't have stay so.
 struct Contact {
   // Found, by whoever adds it (addContact).
   std::uint64_t id = 0;
@@ -53,9 +56,10 @@ struct Contact {
   Vec3 impulse_W;   // impulse on a at p_W [N s]; b got exactly its negative
   Vec3 u_C;         // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
-  int settling = 0;       // see ContactMemory; of the last tick before the solve, of this one after it
-  double rest_speed = 0;  // the last tick's impulses still fit: what moves slower is at rest (rest.h) [m/s]; 0: they don't
-  bool yields = false;    // walls close on what is between them (solve/squeeze.h)
+  int settling = 0;  // see ContactMemory; of the last tick before the solve, of this one after it
+  // the last tick's impulses still fit: what moves slower is at rest (rest.h) [m/s]; 0: they don't
+  double rest_speed = 0;
+  bool yields = false;  // walls close on what is between them (solve/squeeze.h)
   // Remembered (remember_contacts.cpp).
   bool still = false;  // nothing of it or of its bodies changed in this tick, where that was asked
 
@@ -66,7 +70,9 @@ struct Contact {
 
 // Row k >= kTorsionRow turns about this axis; the radius makes it a velocity.
 inline Vec3 axisOf(const Contact& c, int k) { return k == kTorsionRow ? c.R_WC.col(2) : c.R_WC.col(k - kRollingRow); }
-inline double radiusOf(const Contact& c, int k) { return k == kTorsionRow ? c.material.torsion_radius : c.material.rolling_radius; }
+inline double radiusOf(const Contact& c, int k) {
+  return k == kTorsionRow ? c.material.torsion_radius : c.material.rolling_radius;
+}
 
 inline bool turns(const Motion& m) { return m.w_W.squaredNorm() != 0; }
 
@@ -78,11 +84,14 @@ inline bool turns(const Motion& m) { return m.w_W.squaredNorm() != 0; }
   }
 }
 
-// Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s]; of rows that the contact has, about n, t1, t2 [rad/s].
+// Velocity of a relative to b where they touch, in C: along t1, t2, n [m/s]; of rows that
+// the contact has, about n, t1, t2 [rad/s].
 //   rows  of the contact, from withRows
-// In line and number by number, here and where it is used: vectors that go through memory are read whole before their halves are there.
+// In line and number by number, here and where it is used: vectors that go through memory are
+// read whole before their halves are there.
 template <class Rows>
-[[gnu::always_inline]] inline void relativeVelocity(const Contact& c, const Motion& a, const Motion& b, Rows rows, double* v) {
+[[gnu::always_inline]] inline void relativeVelocity(const Contact& c, const Motion& a, const Motion& b, Rows rows,
+                                                    double* v) {
   double v_W[3];
   for (int i = 0; i < 3; ++i) v_W[i] = a.v_W[i] - b.v_W[i];
   if (turns(a)) addTurn(a.w_W, c.arm_a_W, 1, v_W);
@@ -95,12 +104,14 @@ inline bool isOfSameTwo(const Contact& x, const Contact& y) { return isSame(x.a,
 
 // Identity of a contact from tick to tick; contacts are sorted by it. From the highest bit on:
 //   2 bits kind   0: body a on body b;  1: point a on body b;  2: a stop or brake of a joint
-//   30 bits who   bodies a and b with 15 - s bits each, a's shape and b's with s each; or the point with 15, b with 15 - s, its shape with s
+//   30 bits who   bodies a and b with 15 - s bits each, a's shape and b's with s each; or the point
+//                 with 15, b with 15 - s, its shape with s
 //   32 bits feature
 //   shape_bits  s of the model: 0 where each body has one shape
 std::uint64_t contactId(int shape_bits, const Side& a, const Side& b, std::uint32_t feature);
 
-// Two identities of the same two bodies, or of the same point and body, whichever shapes touch. Those follow each other.
+// Two identities of the same two bodies, or of the same point and body,
+// whichever shapes touch. Those follow each other.
 inline bool isOfSameTwo(int shape_bits, std::uint64_t x, std::uint64_t y) {
   const int shapes = x >> 62 ? shape_bits : 2 * shape_bits;
   return x >> (32 + shapes) == y >> (32 + shapes);

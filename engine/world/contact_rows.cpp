@@ -30,7 +30,8 @@ struct Rates {
         longer(h == state.h_last ? 1 : std::min(h / state.h_last, kMostLonger)) {}
 };
 
-// The turn of the normal and of the arms from now to the end, from their motion since the middle of the last part of a tick: n_end . v_end - n_mid . v_mid.
+// The turn of the normal and of the arms from now to the end, from their motion since the middle of the last part
+// of a tick: n_end . v_end - n_mid . v_mid.
 double turnOfNormal(const Rates& rates, const Contact& c, const ContactMemory& memory) {
   const auto n_W = c.R_WC.col(2);
   double turn = 0;
@@ -46,17 +47,21 @@ double turnOfNormal(const Rates& rates, const Contact& c, const ContactMemory& m
 // Newton's law of impact; what touches without hitting is only kept from closing.
 double impactBias(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
   const double u_n = c.v_start_C[kNormalRow];
-  return scratch.bounce * bounceRestitution(c.material.restitution, u_n, gapAcceleration(model, scratch, c), model.options.h) * u_n;
+  return scratch.bounce *
+         bounceRestitution(c.material.restitution, u_n, gapAcceleration(model, scratch, c), model.options.h) * u_n;
 }
 
-// True if a contact that landed in the last tick now only rolls on, round a rim or along an edge: all its normal velocity comes from the turn of
-// its arms, which it meets from the middle of the landing to that of this tick, twice `turn`.
+// True if a contact that landed in the last tick now only rolls on, round a rim or along an edge:
+// all its normal velocity comes from the turn of its arms, which it meets from the middle of the
+// landing to that of this tick, twice `turn`.
 bool rollsOn(double u_n, double turn) {
   constexpr double kAlike = 0.2;  // of the turn: it changes from tick to tick
   return std::abs(turn) > kClosingSpeed && std::abs(u_n - 2 * turn) < kAlike * std::abs(turn);
 }
 
-double largestCorrection(const WorldModel& model, const Contact& c) { return isPushedOut(model, c) ? kDeepSpeed : kLargestCorrection; }
+double largestCorrection(const WorldModel& model, const Contact& c) {
+  return isPushedOut(model, c) ? kDeepSpeed : kLargestCorrection;
+}
 
 double normalBias(const WorldModel& model, const Rates& rates, const WorldScratch& scratch, Contact& c) {
   if (scratch.h == 0) return impactBias(model, scratch, c);
@@ -65,19 +70,22 @@ double normalBias(const WorldModel& model, const Rates& rates, const WorldScratc
   if (memory && memory->active) {
     const double turn = turnOfNormal(rates, c, *memory);
     // A contact that landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
-    if (!memory->closing || rollsOn(u_n, turn)) return std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turn;
+    if (!memory->closing || rollsOn(u_n, turn))
+      return std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turn;
   }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;
   c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick
-  const double lands = phi_start > 0 ? phi_start / scratch.h : std::max(rates.normal * phi_start, -largestCorrection(model, c));
+  const double lands =
+      phi_start > 0 ? phi_start / scratch.h : std::max(rates.normal * phi_start, -largestCorrection(model, c));
   // A contact that has just left turns away as it did while it touched.
   if (memory && !memory->active)
-    return std::max(lands, std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turnOfNormal(rates, c, *memory));
+    return std::max(lands,
+                    std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turnOfNormal(rates, c, *memory));
   return lands;
 }
 
-// How much of the slip at the start counts besides that at the end: all of it, and friction points against their mean, second order; none where friction
-// may end or turn the slip within some ticks, or what crawls in a heap would chatter.
+// How much of the slip at the start counts besides that at the end: all of it, and friction points against their mean,
+// second order; none where friction may end or turn the slip within some ticks, or what crawls in a heap would chatter.
 double slidingShare(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
   constexpr double kFastSlip = 48;  // times what the contact's friction takes from the slip of a point mass in a tick
   const ContactMemory* const memory = c.memory;
@@ -101,7 +109,8 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
     double v_free_C[kMaxContactRows];
     relativeVelocity(c, c.mover_a->free, c.mover_b->free, rows, v_free_C);
     for (int k = 0; k < rows; ++k) {
-      const double tangent_bias = c.stuck ? rates.tangent * (c.offset_C[k] + 0.5 * scratch.h * c.v_start_C[k]) : slide * c.v_start_C[k];
+      const double tangent_bias =
+          c.stuck ? rates.tangent * (c.offset_C[k] + 0.5 * scratch.h * c.v_start_C[k]) : slide * c.v_start_C[k];
       const double bias = c.bias_C[k] = k == kNormalRow ? normal_bias : tangent_bias;
       q_i[k] = (k >= kTorsionRow ? radiusOf(c, k) : 1) * (v_free_C[k] + bias);
       r_i[k] = memory ? rates.longer * memory->r[k] : 0;

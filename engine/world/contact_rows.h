@@ -1,20 +1,27 @@
-// contact_rows: from contacts to the numbers that the solver sees: what each remembers, its velocity and biases. (Jacobians: islands.h.)
+// contact_rows: from contacts to the numbers that the solver sees: what each remembers, its
+// velocity and biases. (Jacobians: islands.h.)
 //
 // Biases (the solver makes u + mu |u_T| e_n lie in K*, u including the bias b):
-//   open, not touching before    b_n = phi_0 / h                 so that it lands exactly, phi_0 the gap at the start of the tick
-//   touching before              b_n = 0.2 phi / h + 1/2 dn/dt h . v   drift correction, and the turn of the normal from the middle
-//                                                                of the tick to its end (that makes curved contacts second order)
-//   stuck                        b_T = 0.5 (d_T + h u_T / 2) / h   d_T: how far the two have slid since they stuck, u_T: how fast they did at
-//                                                                the start of the tick. d_T is the integral of the slip velocity, not the
-//                                                                distance of two material points: that grows by R (w h)^3 / 24 per tick in
-//                                                                pure rolling, and would brake it
-// A correction pushes apart with at most kLargestCorrection, so that deep overlap doesn't explode; between bodies without joints with at most
-// kDeepSpeed: deeper overlap is undone by moving them (push_out.h), which leaves no velocity behind.
-// Torsion and rolling stick likewise, by the angles that a has turned past b. What resists rolling shares the cone with friction, so that a ball
-// that rolls against it creeps: v = (R + k) w with R k^2 + (I/m + R^2 - e_r^2) k - R e_r^2 = 0, k ~ (5/7) e_r^2 / R for a solid ball. It slows down
-// by mu g k / sqrt(k^2 + e_r^2) ~ (5/7) mu e_r g / R, and stays on a slope iff tan th <= mu e_r / sqrt(R^2 + e_r^2).
-// With the gap taken at the predicted middle, d' = d + h (u + u')/2 and u' = -gamma (d + h u/2)/h, an error decays by 1 - gamma per tick
-// without ringing, for any gamma <= 1.
+//   open, not touching before    b_n = phi_0 / h                 so that it lands exactly, phi_0
+//                                                                the gap at the start of the tick
+//   touching before              b_n = 0.2 phi / h + 1/2 dn/dt h . v   drift correction, and the turn
+//                                                                      of the normal from the middle
+//                                                                of the tick to its end (that makes
+//                                                                curved contacts second order)
+//   stuck                        b_T = 0.5 (d_T + h u_T / 2) / h   d_T: how far the two have slid since
+//                                                                  they stuck, u_T: how fast they did at
+//                                                                the start of the tick. d_T is the integral of
+//                                                                the slip velocity, not the distance of two
+//                                                                material points: that grows by R (w h)^3 / 24
+//                                                                per tick in pure rolling, and would brake it
+// A correction pushes apart with at most kLargestCorrection, so that deep overlap doesn't explode; between bodies
+// without joints with at most kDeepSpeed: deeper overlap is undone by moving them (push_out.h), which leaves no
+// velocity behind. Torsion and rolling stick likewise, by the angles that a has turned past b. What resists
+// rolling shares the cone with friction, so that a ball that rolls against it creeps: v = (R + k) w with R k^2 +
+// (I/m + R^2 - e_r^2) k - R e_r^2 = 0, k ~ (5/7) e_r^2 / R for a solid ball. It slows down by mu g k / sqrt(k^2 +
+// e_r^2) ~ (5/7) mu e_r g / R, and stays on a slope iff tan th <= mu e_r / sqrt(R^2 + e_r^2). With the gap taken
+// at the predicted middle, d' = d + h (u + u')/2 and u' = -gamma (d + h u/2)/h, an error decays by 1 - gamma per
+// tick without ringing, for any gamma <= 1.
 #pragma once
 #include <span>
 
@@ -32,14 +39,15 @@ constexpr double kClosingSpeed = 1e-6;       // slower approaches count as rest 
 // By id.
 void sortContacts(WorldScratch& scratch);
 
-// Finds what is remembered of the contacts, sorted by id, by identity, and of what has a new one by its place on the pair (where corners lie on edges identities
-// come and go); fills frames, arms, friction and stick offsets.
+// Finds what is remembered of the contacts, sorted by id, by identity, and of what has a new one by its place on the
+// pair (where corners lie on edges identities come and go); fills frames, arms, friction and stick offsets.
 void recallContacts(std::span<const ContactMemory> memories, WorldScratch& scratch);
 
 // Recalls the contacts, which are sorted, and fills first_row, q, mu and the warm start r, in their order.
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
-// Writes what the contacts are to remember, and puts what sleeping ones remember among it (island_sleep.h); notes which of them a tick changed nothing of.
+// Writes what the contacts are to remember, and puts what sleeping ones remember among it (island_sleep.h); notes
+// which of them a tick changed nothing of.
 void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState& state);
 
 }  // namespace pincer::engine

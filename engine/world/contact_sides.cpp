@@ -33,8 +33,8 @@ void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& 
 }
 
 // F  of a sphere a multiple of the identity
-void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F, bool is_sphere,
-                  ContactSide& out) {
+void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, double root_mass, const Mat3& F,
+                  bool is_sphere, ContactSide& out) {
   const double linear = sign * root_mass;
   const double root_inertia = is_sphere ? sign * F(0, 0) : 1;
   const double arm[3] = {root_inertia * arm_W[0], root_inertia * arm_W[1], root_inertia * arm_W[2]};
@@ -45,7 +45,8 @@ void fillBodySide(const Contact& c, int rows, double sign, const Vec3& arm_W, do
     A[0] = linear * x;
     A[1] = linear * y;
     A[2] = linear * z;
-    for (int j = 0; j < 3; ++j) A[3 + j] = is_sphere ? ang[j] : sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
+    for (int j = 0; j < 3; ++j)
+      A[3 + j] = is_sphere ? ang[j] : sign * (F(0, j) * ang[0] + F(1, j) * ang[1] + F(2, j) * ang[2]);
   }
   for (int k = kTorsionRow; k < rows; ++k) {
     const Vec3 ang = (sign * radiusOf(c, k)) * axisOf(c, k);
@@ -63,8 +64,8 @@ Mat3 rootOfInertia(const FreeRotation& rotation, const Quat& q_WI) {
   return q_WI.toRotationMatrix() * rotation.root_inverse_moments.asDiagonal();
 }
 
-void fillSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, int number,
-              const std::vector<Mat3>& root_inertia, ContactSide& out) {
+void fillSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover,
+              int number, const std::vector<Mat3>& root_inertia, ContactSide& out) {
   out.mover = number;
   if (mover < 0) return;
   const Side& side = is_a ? c.a : c.b;

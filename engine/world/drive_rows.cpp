@@ -36,19 +36,22 @@ void applyMode(const DriveModel& drive, const DriveScratch& now, DriveTick& out)
   out = now.law;
   if (now.mode == DriveMemory::kWithin) return;
   out = {};
-  out.force = now.mode == DriveMemory::kLow ? drive.lower_force : now.mode == DriveMemory::kHigh ? drive.upper_force : middleOf(drive);
+  out.force = now.mode == DriveMemory::kLow    ? drive.lower_force
+              : now.mode == DriveMemory::kHigh ? drive.upper_force
+                                               : middleOf(drive);
 }
 
 // m^ and p of a drive's law where the tree is without it, and the mobility of l.
-void findLaw(const TreeModel& tree, const TreeDrive& own, const TreeScratch& s, std::span<const double> u, double mobility, double h,
-             DriveScratch& now) {
+void findLaw(const TreeModel& tree, const TreeDrive& own, const TreeScratch& s, std::span<const double> u,
+             double mobility, double h, DriveScratch& now) {
   const DriveTick& law = now.law;
   double l = 0;
   for (const TreeDrive::Term& term : own.terms) l += term.factor * s.q[tree.coordinates[term.coordinate].q];
   const ElementTick tick{law.stiffness, law.damping,    l - law.target, lengthRate(tree, s.course.mid, own, u),
                          law.way,       law.start_rate, law.end_rate,   h};
   const double inertia = 1 / mobility;
-  const ImpliedInertia implied = isSoft(law.stiffness, law.damping, inertia, h) ? softLaw(tick) : stiffLaw(tick, inertia);
+  const ImpliedInertia implied =
+      isSoft(law.stiffness, law.damping, inertia, h) ? softLaw(tick) : stiffLaw(tick, inertia);
   now.mass = implied.mass;
   now.impulse = implied.impulse + h * law.force;
 }
@@ -66,18 +69,21 @@ DriveInput controlAt(const DriveInput& before, const DriveInput& end, double lef
   if (!end.moves || !(share < 1)) return end;
   Vec3 rate = Vec3::Zero();
   const auto along = [](double x) { return Vec3(x, 0, 0); };
-  const Vec3 value = cubicBetween(along(before.value), along(before.rate), along(end.value), along(end.rate), left, share, rate);
+  const Vec3 value =
+      cubicBetween(along(before.value), along(before.rate), along(end.value), along(end.rate), left, share, rate);
   return {value.x(), rate.x(), true};
 }
 
-void startDrive(const WorldModel& model, const WorldState& state, const TreeDrive& own, WorldScratch& scratch, DriveTick& out) {
+void startDrive(const WorldModel& model, const WorldState& state, const TreeDrive& own, WorldScratch& scratch,
+                DriveTick& out) {
   const DriveModel& drive = model.drives[own.drive];
   DriveScratch& now = scratch.drives[own.drive];
   now.law = lawOf(drive, state.controls[own.drive], now.input);
   now.mode = state.drives[own.drive];
   if (scratch.h > 0) {
     const double h = scratch.h;
-    if (drive.control == DriveModel::Control::kVelocity) now.law.way = 0.5 * h * (now.law.start_rate + now.law.end_rate);
+    if (drive.control == DriveModel::Control::kVelocity)
+      now.law.way = 0.5 * h * (now.law.start_rate + now.law.end_rate);
   }
   if (!isLimited(drive)) now.mode = DriveMemory::kWithin;
   if (!hasLaw(now.law)) {  // a force, whatever moves
@@ -128,9 +134,10 @@ bool reviseDrive(const WorldModel& model, const WorldState& state, JointRowScrat
   now.force = impulse / h;
   if (!isLimited(drive)) return false;
   const double slack = kBrakeRoundOff * rangeOf(drive);
-  const bool is_right = now.mode == DriveMemory::kLow    ? now.force <= drive.lower_force + slack
-                        : now.mode == DriveMemory::kHigh ? now.force >= drive.upper_force - slack
-                                                         : drive.lower_force - slack <= now.force && now.force <= drive.upper_force + slack;
+  const bool is_right = now.mode == DriveMemory::kLow ? now.force <= drive.lower_force + slack
+                        : now.mode == DriveMemory::kHigh
+                            ? now.force >= drive.upper_force - slack
+                            : drive.lower_force - slack <= now.force && now.force <= drive.upper_force + slack;
   now.force = std::clamp(now.force, drive.lower_force, drive.upper_force);
   if (is_right) return false;
   now.mode = DriveMemory::kUnsure;

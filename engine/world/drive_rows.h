@@ -1,4 +1,5 @@
-// drive_rows: drives in a tick, and what their limits make of them: a part of M, a constant force, or a brake (joint_rows.h).
+// drive_rows: drives in a tick, and what their limits make of them: a part of M, a
+// constant force, or a brake (joint_rows.h).
 //
 //   r = clamp(p + m^ (l' - l'+)),   h lower_force <= r <= h upper_force        m^, p: engine/tree/drive_law.h
 #pragma once
@@ -16,7 +17,8 @@ DriveInput withinControls(const DriveModel& drive, const DriveInput& told);
 DriveInput controlAt(const DriveInput& before, const DriveInput& end, double left, double share);
 
 // At the start of a part of a tick: the drive's law, and what the tree feels of it by itself.
-void startDrive(const WorldModel& model, const WorldState& state, const TreeDrive& own, WorldScratch& scratch, DriveTick& out);
+void startDrive(const WorldModel& model, const WorldState& state, const TreeDrive& own, WorldScratch& scratch,
+                DriveTick& out);
 
 // Its law where the tree is without it, and its row where one is wanted.
 void putDrive(const WorldModel& model, const WorldState& state, int slot, JointRowScratch& row, WorldScratch& scratch);

@@ -17,8 +17,8 @@ double fastestFree(const WorldModel& model, const WorldScratch& scratch) {
     const BodyScratch& s = scratch.bodies[i];
     if (!body.dynamic && !body.driven) continue;
     const double reach = std::min(body.bounding_radius, 1e6);
-    fastest2 =
-        std::max(fastest2, 2 * (std::max(s.free.v_W.squaredNorm(), s.start.v_W.squaredNorm()) + reach * reach * s.free.w_W.squaredNorm()));
+    fastest2 = std::max(fastest2, 2 * (std::max(s.free.v_W.squaredNorm(), s.start.v_W.squaredNorm()) +
+                                       reach * reach * s.free.w_W.squaredNorm()));
   }
   for (const PointScratch& point : scratch.points) fastest2 = std::max(fastest2, 2 * point.free.v_W.squaredNorm());
   return std::sqrt(fastest2);
@@ -50,8 +50,9 @@ void markFarContacts(const WorldModel& model, WorldScratch& scratch) {
   const double limit = kFarTimes * fastestFree(model, scratch);
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
     Contact& c = scratch.contacts[i];
-    c.far = c.bias_C[kNormalRow] > 0 && scratch.q[static_cast<std::size_t>(scratch.first_row[i] + kNormalRow)] > limit &&
-            !isJoined(model, c.a) && !isJoined(model, c.b);
+    c.far = c.bias_C[kNormalRow] > 0 &&
+            scratch.q[static_cast<std::size_t>(scratch.first_row[i] + kNormalRow)] > limit && !isJoined(model, c.a) &&
+            !isJoined(model, c.b);
     scratch.far_contacts += c.far;
   }
 }

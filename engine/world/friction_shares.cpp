@@ -16,7 +16,8 @@ constexpr double kOneFace = 0.9999;  // cosine of the angle between the normals;
 // Of the contacts of one fingertip with one body those that push.
 class Face {
  public:
-  Face(std::span<const Contact> contacts, int first, WorldScratch& scratch) : contacts_(contacts), first_(first), scratch_(scratch) {}
+  Face(std::span<const Contact> contacts, int first, WorldScratch& scratch)
+      : contacts_(contacts), first_(first), scratch_(scratch) {}
 
   // False where they aren't a face.
   bool measure() {
@@ -36,7 +37,8 @@ class Face {
     forEachPushing([&](const Contact& c, const double* r, int rows) {
       const Vec3 rho_W = c.p_W - centre_W_;
       const double e = rows > kTorsionRow ? radiusOf(c, kTorsionRow) : 0, w = c.mu * r[kNormalRow];
-      moment += c.n_W().dot(rho_W.cross(r[0] * c.R_WC.col(0) + r[1] * c.R_WC.col(1))) + (e > 0 ? e * r[kTorsionRow] : 0);
+      moment +=
+          c.n_W().dot(rho_W.cross(r[0] * c.R_WC.col(0) + r[1] * c.R_WC.col(1))) + (e > 0 ? e * r[kTorsionRow] : 0);
       spread += w * (rho_W.squaredNorm() + e * e);
     });
     turn_ = spread > 0 ? moment / spread : 0;

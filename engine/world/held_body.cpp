@@ -36,10 +36,12 @@ OneFreedomLaw lawOf(const WorldModel& model, const JointGroup& g, const WorldScr
   if (!isPivot(model, g)) return {held.axis_W.dot(g_W), 0, c, 0, false};
   const double k = model.bodies[body].mass / g.inertia;
   const double across = arm_W.dot(g_W) - arm_W.dot(held.axis_W) * g_W.dot(held.axis_W);
-  return {k * held.axis_W.dot(arm_W.cross(g_W)), -k * across, c, force ? held.axis_W.dot(force->tau_W) / g.inertia : 0, true};
+  return {k * held.axis_W.dot(arm_W.cross(g_W)), -k * across, c, force ? held.axis_W.dot(force->tau_W) / g.inertia : 0,
+          true};
 }
 
-// The inertial frame once the coordinate has grown by `way`; an axis that has left the joint's by round-off is put back.
+// The inertial frame once the coordinate has grown by `way`; an axis that has
+// left the joint's by round-off is put back.
 Pose placeAt(const WorldModel& model, const JointGroup& g, const HeldScratch& held, const Pose& X_WI, double way) {
   if (way == 0) return X_WI;
   if (!isPivot(model, g)) return {X_WI.q, X_WI.p + way * held.axis_W};
@@ -59,12 +61,14 @@ Vec3 angularMomentum(const BodyModel& body, const Quat& q_WI, const Vec3& w_W) {
   return q_WI * body.moments.cwiseProduct(q_WI.conjugate() * w_W);
 }
 
-BodyState stateAt(const WorldModel& model, const JointGroup& g, const HeldScratch& held, const Pose& X_WI, double rate) {
+BodyState stateAt(const WorldModel& model, const JointGroup& g, const HeldScratch& held, const Pose& X_WI,
+                  double rate) {
   const Motion motion = motionAt(model, g, held, X_WI, rate);
   return {X_WI, motion.v_W, angularMomentum(model.bodies[g.bodies.front()], X_WI.q, motion.w_W)};
 }
 
-// F's only column: what a unit of the coordinate's rate is to the body in the middle of the tick, over the root of its inertia.
+// F's only column: what a unit of the coordinate's rate is to the body in the middle
+// of the tick, over the root of its inertia.
 void fillFactor(const WorldModel& model, const JointGroup& g, const Pose& X_WI_mid, JointGroupScratch& group) {
   const Motion unit = motionAt(model, g, group.held, X_WI_mid, std::sqrt(group.held.inverse_inertia));
   for (int k = 0; k < 3; ++k) {
@@ -112,14 +116,15 @@ void gatherHeldBody(const WorldModel& model, const JointGroup& g, WorldScratch& 
   out.angular_impulse_W = angularMomentum(body, out.X_WI_mid.q, held.gained_rate * unit.w_W);
 }
 
-void advanceHeldBody(const WorldModel& model, const JointGroup& g, const JointGroupScratch& group, double h, BodyScratch& scratch,
-                     BodyState& s) {
+void advanceHeldBody(const WorldModel& model, const JointGroup& g, const JointGroupScratch& group, double h,
+                     BodyScratch& scratch, BodyState& s) {
   s = heldBodyAt(model, g, group, scratch, s, h, h);
-  if (scratch.touched) scratch.end = motionAt(model, g, group.held, s.X_WI, group.held.free_rate + group.held.gained_rate);
+  if (scratch.touched)
+    scratch.end = motionAt(model, g, group.held, s.X_WI, group.held.free_rate + group.held.gained_rate);
 }
 
-BodyState heldBodyAt(const WorldModel& model, const JointGroup& g, const JointGroupScratch& group, const BodyScratch& scratch,
-                     const BodyState& s, double h, double t) {
+BodyState heldBodyAt(const WorldModel& model, const JointGroup& g, const JointGroupScratch& group,
+                     const BodyScratch& scratch, const BodyState& s, double h, double t) {
   PINCER_ASSERT(h > 0 && t >= 0);
   const HeldScratch& held = group.held;
   const double share = t / h, end_rate = held.free_rate + held.gained_rate;
@@ -127,7 +132,8 @@ BodyState heldBodyAt(const WorldModel& model, const JointGroup& g, const JointGr
   // The part of the free course beyond the mean of its rates goes with the square of the time, as that does.
   const double gained = held.gained_way * held.gained_rate, bent = held.free_way - h * held.start_rate + gained;
   const double way = t == h ? held.free_way + gained : t * held.start_rate + share * share * bent;
-  return stateAt(model, g, held, placeAt(model, g, held, s.X_WI, way), held.start_rate + share * (end_rate - held.start_rate));
+  return stateAt(model, g, held, placeAt(model, g, held, s.X_WI, way),
+                 held.start_rate + share * (end_rate - held.start_rate));
 }
 
 }  // namespace pincer::engine

@@ -28,7 +28,8 @@ double inertiaOf(const DrivenPointModel& point, AxisForm form, int axis, double 
   return std::max(0.0, 0.75 * h * h * stiffness - 0.5 * (point.mass + h * point.damping[axis]));
 }
 
-void addInertia(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, double h, double stiffness, PointScratch& out) {
+void addInertia(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, double h, double stiffness,
+                PointScratch& out) {
   Vec3 share;  // of the start's velocity in the free one
   for (int i = 0; i < 3; ++i) {
     const double ratio = inertiaOf(point, forms[static_cast<std::size_t>(i)], i, h, stiffness) * out.inverse_mass[i];
@@ -39,7 +40,8 @@ void addInertia(const DrivenPointModel& point, const std::array<AxisForm, 3>& fo
   out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
   out.mobility_h = 0;  // of this tick alone
   const Vec3 change_W = out.start.v_W - out.free.v_W;
-  out.free.v_W += out.turned ? Vec3(out.R_WA * share.cwiseProduct(out.R_WA.transpose() * change_W)) : Vec3(share.cwiseProduct(change_W));
+  out.free.v_W += out.turned ? Vec3(out.R_WA * share.cwiseProduct(out.R_WA.transpose() * change_W))
+                             : Vec3(share.cwiseProduct(change_W));
 }
 
 }  // namespace
@@ -49,12 +51,14 @@ void steadyInHollows(const WorldModel& model, const WorldState& state, WorldScra
   for (PointScratch& point : scratch.points) point.turning_stiffness = 0;
   for (const Contact& c : scratch.contacts) {
     for (const Side& side : {c.a, c.b}) {
-      if (side.kind == SideKind::kPoint) scratch.points[side.index].turning_stiffness += turningStiffness(model, state, scratch.h, c);
+      if (side.kind == SideKind::kPoint)
+        scratch.points[side.index].turning_stiffness += turningStiffness(model, state, scratch.h, c);
     }
   }
   for (std::size_t i = 0; i < scratch.points.size(); ++i) {
     PointScratch& point = scratch.points[i];
-    if (point.turning_stiffness > 0) addInertia(model.points[i], model.point_forms[i], scratch.h, point.turning_stiffness, point);
+    if (point.turning_stiffness > 0)
+      addInertia(model.points[i], model.point_forms[i], scratch.h, point.turning_stiffness, point);
   }
 }
 

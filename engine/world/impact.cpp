@@ -17,9 +17,12 @@ constexpr double kSlowWay = 0.5;              // of half the thickness, in a tic
 constexpr double kEnergyRoundOff = 1e-12;     // of the energy that goes to and fro in a hit
 constexpr double kHardLanding = 1;            // of what gravity adds to a velocity in a tick
 constexpr double kLate = 1.5;                 // times the part of the tick: what closes so late may still close in it
-constexpr double kTouching = 1e-7;            // gap at which a contact takes part in an impact [m]: what other contacts leave of the root
+// gap at which a contact takes part in an impact [m]: what other contacts leave of the root
+constexpr double kTouching = 1e-7;
 
-bool isDynamic(const WorldModel& model, const Side& side) { return side.kind == SideKind::kBody && model.bodies[side.index].dynamic; }
+bool isDynamic(const WorldModel& model, const Side& side) {
+  return side.kind == SideKind::kBody && model.bodies[side.index].dynamic;
+}
 
 std::span<const ContactMemory> memories(const WorldState& state) {
   return {state.contacts.data(), static_cast<std::size_t>(state.contact_count)};
@@ -83,7 +86,9 @@ bool mayBounce(const WorldModel& model, const WorldState& state, const WorldScra
 void holdBackHits(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
     for (const ImpactPair& pair : *pairs) {
-      if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(model, state, pair.a, pair.b) || hasLanded(scratch, pair)) continue;
+      if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(model, state, pair.a, pair.b) ||
+          hasLanded(scratch, pair))
+        continue;
       PINCER_ASSERT(scratch.impact_pairs.size() < scratch.impact_pairs.capacity());  // the tick allocates nothing
       scratch.impact_pairs.push_back(pair);
     }
@@ -104,7 +109,8 @@ bool turnsFar(const WorldScratch& scratch, int body) {
 }
 
 // A contact that closes in this part of the tick, and how fast: a new one, whose gap isn't round-off.
-bool closesFaster(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const Contact& c, double speed) {
+bool closesFaster(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const Contact& c,
+                  double speed) {
   if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return false;
   if (c.material.restitution > 0 || pushedBefore(state, c.id)) return false;
   if (turnsFar(scratch, c.a.index) || turnsFar(scratch, c.b.index)) return false;
@@ -125,7 +131,8 @@ void holdBackLandings(const WorldModel& model, const WorldState& state, WorldScr
   }
   if (scratch.impact_pairs.size() == before) return;
   std::erase_if(scratch.contacts, [&](const Contact& c) {
-    return closesFaster(model, state, scratch, c, kAlongWith * hard) && isNoted(scratch.impact_pairs, c.a.index, c.b.index);
+    return closesFaster(model, state, scratch, c, kAlongWith * hard) &&
+           isNoted(scratch.impact_pairs, c.a.index, c.b.index);
   });
 }
 
@@ -163,7 +170,8 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
     strike(pair.a);
     strike(pair.b);
   }
-  std::erase_if(scratch.contacts, [&](const Contact& c) { return c.phi > kTouching || givesWay(model, c.a) || givesWay(model, c.b); });
+  std::erase_if(scratch.contacts,
+                [&](const Contact& c) { return c.phi > kTouching || givesWay(model, c.a) || givesWay(model, c.b); });
   const auto isStruck = [&](const Side& side) {
     if (side.kind == SideKind::kJoint) {
       const int tree = scratch.joint_rows[side.index].tree;
@@ -185,8 +193,8 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
   std::erase_if(scratch.contacts, [&](const Contact& c) { return !isStruck(c.a) && !isStruck(c.b); });
 }
 
-// A hit that nothing else hangs together with, nearly always the case, is solved to round-off. One that friction jams has no answer: its bounded
-// impulse stays (squeeze.h), round-off would make it 1e12 times as large.
+// A hit that nothing else hangs together with, nearly always the case, is solved to round-off. One that friction jams
+// has no answer: its bounded impulse stays (squeeze.h), round-off would make it 1e12 times as large.
 void sharpenSingleImpact(WorldScratch& scratch) {
   if (!scratch.solve.converged || scratch.contacts.size() != 1 || scratch.islands.islands.empty() ||
       scratch.islands.islands.front().has_many_sides)
@@ -230,7 +238,8 @@ bool addsEnergy(const WorldModel& model, const WorldScratch& scratch) {
 
 bool pushedBefore(const WorldState& state, std::uint64_t id) {
   const auto all = memories(state);
-  const auto m = std::lower_bound(all.begin(), all.end(), id, [](const ContactMemory& x, std::uint64_t y) { return x.id < y; });
+  const auto m =
+      std::lower_bound(all.begin(), all.end(), id, [](const ContactMemory& x, std::uint64_t y) { return x.id < y; });
   return m != all.end() && m->id == id && m->active;
 }
 
@@ -245,7 +254,8 @@ Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int i) {
 
 Vec3 endAngularVelocity(const WorldModel& model, const WorldScratch& scratch, int i) {
   const BodyScratch& now = scratch.bodies[i];
-  return now.free.w_W + angularVelocity(model.bodies[i].rotation, now.X_WI_mid.q, now.angular_impulse_W - now.free_angular_impulse_W);
+  return now.free.w_W +
+         angularVelocity(model.bodies[i].rotation, now.X_WI_mid.q, now.angular_impulse_W - now.free_angular_impulse_W);
 }
 
 double gapAcceleration(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
@@ -281,7 +291,8 @@ void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScra
     if (!isFarFor(model, pair.a, pair.b, way) || isTouching(model, state, pair.a, pair.b)) continue;
     const auto is_seen = [&](const Contact& c) { return isOfBodies(c, pair.a, pair.b); };
     if (std::any_of(scratch.contacts.begin(), scratch.contacts.end(), is_seen)) continue;
-    if (isNoted(scratch.impact_pairs, pair.a, pair.b) || scratch.pushed_pairs.size() == scratch.pushed_pairs.capacity()) continue;
+    if (isNoted(scratch.impact_pairs, pair.a, pair.b) || scratch.pushed_pairs.size() == scratch.pushed_pairs.capacity())
+      continue;
     scratch.pushed_pairs.push_back({pair.a, pair.b});
     scratch.impact_pairs.push_back({pair.a, pair.b});
   }
@@ -289,7 +300,8 @@ void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScra
 
 void holdBackImpacts(const WorldModel& model, const WorldState& state, bool landings, WorldScratch& scratch) {
   scratch.impact_pairs.clear();
-  if (!scratch.fast_pairs.empty() || !scratch.pushed_pairs.empty() || model.bounces) holdBackHits(model, state, scratch);
+  if (!scratch.fast_pairs.empty() || !scratch.pushed_pairs.empty() || model.bounces)
+    holdBackHits(model, state, scratch);
   if (landings) holdBackLandings(model, state, scratch);
   if (!model.trees.empty()) noteStopHits(model, scratch);
 }

@@ -15,13 +15,14 @@ namespace pincer::engine {
 namespace {
 
 constexpr double kNormalRowWeight = 10;
-constexpr double kInside = -1e-9;      // of the cone's radius: what is further in sticks
-constexpr double kNegligible = 1e-11;  // contradictions between biases below this are below the solver's tolerance [m/s]
-constexpr double kConverged = 1e-10;   // of |A^T b|, squared: 1e-5
-constexpr double kConsistent = 1e-6;   // of what is asked for: what is left then is the ridge's
-constexpr int kMostSteps = 40;         // of conjugate gradients
-constexpr int kFewFitted = 200;        // for which so many may be taken; beyond,
-constexpr int kFitVisits = 1500;       // of contacts, but
+constexpr double kInside = -1e-9;  // of the cone's radius: what is further in sticks
+// contradictions between biases below this are below the solver's tolerance [m/s]
+constexpr double kNegligible = 1e-11;
+constexpr double kConverged = 1e-10;  // of |A^T b|, squared: 1e-5
+constexpr double kConsistent = 1e-6;  // of what is asked for: what is left then is the ridge's
+constexpr int kMostSteps = 40;        // of conjugate gradients
+constexpr int kFewFitted = 200;       // for which so many may be taken; beyond,
+constexpr int kFitVisits = 1500;      // of contacts, but
 constexpr int kFewestSteps = 3;
 constexpr std::int64_t kPerContactFitted = 200;  // multiplications of a step
 
@@ -36,13 +37,14 @@ double dot(const double* a, const double* b, int n) {
 // The stick offset follows.
 void changeBias(double h, double offset_rate, double change, int k, Contact& c) {
   c.bias_C[k] += change;
-  if (k != kNormalRow && c.stuck && offset_rate > 0) c.offset_C[k] = c.bias_C[k] / offset_rate - 0.5 * h * c.v_start_C[k];
+  if (k != kNormalRow && c.stuck && offset_rate > 0)
+    c.offset_C[k] = c.bias_C[k] / offset_rate - 0.5 * h * c.v_start_C[k];
 }
 
 class BiasFit {
  public:
-  BiasFit(PushingBy pushing, const ContactProblem& problem, const double* r, std::span<const int> order, std::vector<Contact>& contacts,
-          SolverScratch& memory)
+  BiasFit(PushingBy pushing, const ContactProblem& problem, const double* r, std::span<const int> order,
+          std::vector<Contact>& contacts, SolverScratch& memory)
       : pushing_(pushing),
         problem_(problem),
         r_(r),
@@ -51,7 +53,8 @@ class BiasFit {
         memory_(memory),
         rows_(problem.rowCount()),
         size_(kMoverFreedoms * problem.movers),
-        most_steps_(problem.contactCount() <= kFewFitted ? kMostSteps : std::max(kFewestSteps, kFitVisits / problem.contactCount())),
+        most_steps_(problem.contactCount() <= kFewFitted ? kMostSteps
+                                                         : std::max(kFewestSteps, kFitVisits / problem.contactCount())),
         b_(memory.work.data()),
         image_(memory.change.data()),
         weight_(memory.best_r.data()),
@@ -91,7 +94,8 @@ class BiasFit {
     constexpr double kStiff = 1e8;
     double least = std::numeric_limits<double>::infinity();
     weighContacts(problem_, memory_);
-    for (int i = 0; i < problem_.contactCount(); ++i) least = std::min(least, memory_.weight[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < problem_.contactCount(); ++i)
+      least = std::min(least, memory_.weight[static_cast<std::size_t>(i)]);
     const double stiff = kStiff / least;
     matrix.clear();
     for (int i = 0; i < problem_.contactCount(); ++i) {
@@ -117,7 +121,8 @@ class BiasFit {
     for (int j = 0; j < size_; ++j) direction_[j] = gradient_[j];
     double g2 = dot(gradient_, gradient_, size_);
     const double enough = kConverged * g2;
-    for (int n = 0; n < most_steps_ && g2 > enough && spend(kPerContactFitted * problem_.contactCount(), memory_); ++n) {
+    for (int n = 0; n < most_steps_ && g2 > enough && spend(kPerContactFitted * problem_.contactCount(), memory_);
+         ++n) {
       move();
       const double step = g2 / dot(image_, image_, rows_);
       if (!std::isfinite(step)) return;
@@ -215,8 +220,8 @@ bool mayContradict(const ContactProblem& problem) {
   return problem.movers >= 2 && n >= problem.movers;
 }
 
-void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,
-                     std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
+void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
+                     double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
   BiasFit fit(pushing, problem, r, order, contacts, memory);
   if (memory.operations_left < 0) return;
   const double asked = fit.gather();
@@ -226,8 +231,8 @@ void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const Cont
   fit.apply(h, offset_rate, q);
 }
 
-void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q, std::span<const int> order,
-             std::vector<Contact>& contacts) {
+void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q,
+             std::span<const int> order, std::vector<Contact>& contacts) {
   for (int i = 0; i < problem.contactCount(); ++i) {
     Contact& c = contacts[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
     for (int k = 0; k < problem.rows(i); ++k) {

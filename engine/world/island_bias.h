@@ -3,13 +3,17 @@
 //   minimise over z  sum_i w_i^2 |A_i z + b_i|^2,   b_i <- -A_i z
 //
 //   A_i  of ContactProblem: how contact i's velocity follows the movers' scaled velocities z [kg^-1/2]
-//   b_i  bias of contact i [m/s]: along the normal it corrects the gap, along the tangents the stick offset. Of sliding contacts the normal alone
+//   b_i  bias of contact i [m/s]: along the normal it corrects the gap, along the tangents the stick
+//        offset. Of sliding contacts the normal alone
 //   w_i  10 along normals, 1 along the rest [-], as in stick_bias.h
 //
-// Around loops of bodies (balls in a box) gaps and offsets can ask for what no motion gives. Rigid contacts then press against each other without
-// limit, and the solver finds no answer because there is none. What is left here can be had: by the motion z, at which all of these contacts stay
-// shut. Of hundreds of contacts a few steps are taken per tick: what is left is fitted again in the next one. So it is with a rod between two pads, too, which two contacts each hold. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by stick_bias.h, at less cost.
-// Source: conjugate gradients on the normal equations (M. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409-436, section 10).
+// Around loops of bodies (balls in a box) gaps and offsets can ask for what no motion gives. Rigid contacts then press
+// against each other without limit, and the solver finds no answer because there is none. What is left here can be had:
+// by the motion z, at which all of these contacts stay shut. Of hundreds of contacts a few steps are taken per tick:
+// what is left is fitted again in the next one. So it is with a rod between two pads, too, which two contacts each
+// hold. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by
+// stick_bias.h, at less cost. Source: conjugate gradients on the normal equations (M. Hestenes, E. Stiefel, J. Res.
+// Natl. Bur. Stand. 49 (1952) 409-436, section 10).
 #pragma once
 #include "pincer/engine/world/scratch.h"
 
@@ -19,21 +23,22 @@ namespace pincer::engine {
 enum class PushingBy : std::uint8_t {
   kLastTick,  // those that did in the last tick, but for what closes in this one
   kImpulses,  // those that `r` has in their cones
-  kWedged,    // those that `r` has in their cones, all of them as if they stuck: of a point in a groove that locks (wedge.h)
+  // those that `r` has in their cones, all of them as if they stuck: of a point in a groove that locks (wedge.h)
+  kWedged,
 };
 
 // True if the problem's contacts may contradict each other around a loop of bodies.
 bool mayContradict(const ContactProblem& problem);
 
-// Where mayContradict(problem): fits bias_C and the stick offsets of the island's contacts, and corrects problem.q through `q`. `r`: impulses of
-// the last tick, or the best that were found in this one; `order`: which of `contacts` the problem's are; `memory` is working memory. Allocates
-// nothing.
+// Where mayContradict(problem): fits bias_C and the stick offsets of the island's contacts, and corrects problem.q
+// through `q`. `r`: impulses of the last tick, or the best that were found in this one; `order`: which of `contacts`
+// the problem's are; `memory` is working memory. Allocates nothing.
 //   offset_rate  bias_T = offset_rate (offset_T + h v_start_T / 2) [1/s]
-void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r, double* q,
-                     std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory);
+void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
+                     double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory);
 
 // Where the solver found an answer only for q + `give`: what the contacts ask for, and q, become what they get.
-void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q, std::span<const int> order,
-             std::vector<Contact>& contacts);
+void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q,
+             std::span<const int> order, std::vector<Contact>& contacts);
 
 }  // namespace pincer::engine

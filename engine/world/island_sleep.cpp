@@ -18,7 +18,8 @@ void forBodiesOf(const Contact& c, F f) {
 bool isStill(const WorldScratch& scratch, const Island& island) {
   if (!island.result.converged) return false;
   const int* const order = scratch.islands.order.data() + island.place;
-  return std::all_of(order, order + island.contacts, [&](int i) { return scratch.contacts[static_cast<std::size_t>(i)].still; });
+  return std::all_of(order, order + island.contacts,
+                     [&](int i) { return scratch.contacts[static_cast<std::size_t>(i)].still; });
 }
 
 void putToSleep(const WorldModel& model, const WorldState& state, const Island& island, WorldScratch& scratch) {
@@ -104,7 +105,8 @@ void wake(int group, WorldScratch& scratch) {
   PINCER_ASSERT(sleep.bodies >= 0);
 }
 
-// True if something that moves is beside one of the island's bodies, by a contact that isn't of the island because it can't close (far_contacts.h).
+// True if something that moves is beside one of the island's bodies, by a contact that isn't of the island
+// because it can't close (far_contacts.h).
 bool isBesideMotion(const WorldModel& model, const WorldScratch& scratch, const Island& island) {
   if (scratch.far_contacts == 0) return false;
   const auto moves = [&](const Side& side) {
@@ -115,7 +117,8 @@ bool isBesideMotion(const WorldModel& model, const WorldScratch& scratch, const 
   for (const Contact& c : scratch.contacts) {
     if (!c.far || !(moves(c.a) || moves(c.b))) continue;
     for (int n = 0; n < island.contacts; ++n) {
-      const Contact& own = scratch.contacts[static_cast<std::size_t>(scratch.islands.order[static_cast<std::size_t>(island.place + n)])];
+      const Contact& own =
+          scratch.contacts[static_cast<std::size_t>(scratch.islands.order[static_cast<std::size_t>(island.place + n)])];
       bool touches = false;
       forBodiesOf(own, [&](std::size_t body) {
         if (!model.bodies[body].dynamic) return;
@@ -138,7 +141,8 @@ bool isPushedAsBefore(const WorldScratch& scratch, std::size_t body) {
 
 void wakeChanged(const WorldModel& model, const WorldState& state, const StepInputs& inputs, WorldScratch& scratch) {
   WorldSleep& sleep = scratch.sleep;
-  if (state.h_last != model.options.h || sleep.gravity_W != scratch.gravity_W || !sameMemories(state, sleep)) return wakeAll(scratch);
+  if (state.h_last != model.options.h || sleep.gravity_W != scratch.gravity_W || !sameMemories(state, sleep))
+    return wakeAll(scratch);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     const BodyModel& body = model.bodies[i];
     const bool is_idle = body.dynamic ? sleep.idle[i] : !body.driven || stands(model, i, state, inputs);

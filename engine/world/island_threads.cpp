@@ -42,7 +42,8 @@ void IslandThreads::takeAll(int thread) {
 void IslandThreads::work(int thread) {
   unsigned seen = 0;
   for (;;) {
-    for (int look = 0; look < kLooks && round_.load(std::memory_order_acquire) == seen; ++look) std::this_thread::yield();
+    for (int look = 0; look < kLooks && round_.load(std::memory_order_acquire) == seen; ++look)
+      std::this_thread::yield();
     round_.wait(seen);
     ++seen;
     if (stop_) return;

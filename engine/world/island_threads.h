@@ -1,7 +1,8 @@
-// island_threads: a few threads that wait for islands to solve. Which thread solves an island doesn't show in the result.
+// island_threads: a few threads that wait for islands to solve. Which thread
+// solves an island doesn't show in the result.
 //
-// A tick hands over by raising a counter and takes back by reading one: atomics, no lock, no allocation. The threads look for work for a
-// while after each tick and then sleep in the kernel until they are woken.
+// A tick hands over by raising a counter and takes back by reading one: atomics, no lock, no allocation. The threads
+// look for work for a while after each tick and then sleep in the kernel until they are woken.
 #pragma once
 #include <atomic>
 #include <thread>

@@ -28,13 +28,14 @@ int moverOf(const WorldModel& model, const WorldScratch& scratch, const Contact&
   if (side.kind == SideKind::kBody) {
     const BodyModel& body = model.bodies[side.index];
     if (body.tree >= 0) return moverOfLink(model, body);
-    if (body.joint_group >= 0) return model.joint_groups[body.joint_group].bodies.front();  // joined bodies are one mover
+    // joined bodies are one mover
+    if (body.joint_group >= 0) return model.joint_groups[body.joint_group].bodies.front();
     return body.dynamic ? side.index : -1;
   }
   const PointScratch& point = scratch.points[side.index];
   const Vec3& inverse_mass = point.inverse_mass;
-  const bool moves =
-      inverse_mass[0] != 0 || inverse_mass[1] != 0 || inverse_mass[2] != 0 || point.inverse_twist > 0 || point.inverse_turn > 0;
+  const bool moves = inverse_mass[0] != 0 || inverse_mass[1] != 0 || inverse_mass[2] != 0 || point.inverse_twist > 0 ||
+                     point.inverse_turn > 0;
   return moves ? static_cast<int>(model.bodies.size()) + side.index : -1;
 }
 
@@ -76,7 +77,8 @@ bool touches(const ContactEnds& ends, int mover) { return ends.a == mover || end
 bool haveCommonMover(const IslandScratch& s) {
   const ContactEnds& first = s.ends[s.near[0]];
   for (const int mover : {first.a, first.b}) {
-    if (mover >= 0 && std::all_of(s.near.begin(), s.near.end(), [&](int i) { return touches(s.ends[i], mover); })) return true;
+    if (mover >= 0 && std::all_of(s.near.begin(), s.near.end(), [&](int i) { return touches(s.ends[i], mover); }))
+      return true;
   }
   return false;
 }
@@ -88,7 +90,8 @@ void uniteMovers(IslandScratch& s) {
   };
   for (const int i : s.near) {
     const ContactEnds& ends = s.ends[i];
-    for (const int end : {ends.a, ends.b}) forEachOf(s, end < 0 ? -1 : parentOf(s, end), [&](int mover) { unite(end, mover); });
+    for (const int end : {ends.a, ends.b})
+      forEachOf(s, end < 0 ? -1 : parentOf(s, end), [&](int mover) { unite(end, mover); });
     if (ends.a >= 0 && ends.b >= 0) unite(ends.a, ends.b);
   }
 }
@@ -125,7 +128,8 @@ void sortContacts(IslandScratch& s) {
   PINCER_ASSERT(place == static_cast<int>(s.near.size()));
 }
 
-int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, int mover, Island& island, IslandScratch& s) {
+int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, int mover, Island& island,
+             IslandScratch& s) {
   if (mover < 0) return -1;
   PINCER_ASSERT(isIndex(mover, s.number.size()));
   if (s.number[mover] < 0) {
@@ -159,7 +163,8 @@ void fillManySides(const WorldModel& model, WorldScratch& scratch, int k, Island
       const Side& side = is_a ? c.a : c.b;
       forEachOf(s, is_a ? s.ends[i].a : s.ends[i].b, [&](int mover) {
         ContactSide& out = all[sides];
-        fillSide(model, scratch, c, rows, is_a, mover, numberOf(model, scratch, side, mover, island, s), s.root_inertia, out);
+        fillSide(model, scratch, c, rows, is_a, mover, numberOf(model, scratch, side, mover, island, s), s.root_inertia,
+                 out);
         for (int other = first_side[n]; other < sides; ++other) {
           if (all[other].mover == out.mover) return addSide(rows, out, all[other]);
         }
@@ -183,7 +188,8 @@ bool hasManySides(const IslandScratch& s, const Island& island) {
 }
 
 // Of a link that two blocks move, against what doesn't move: the inboard one takes the place of that.
-void fillInboardSide(const WorldModel& model, WorldScratch& scratch, int i, Island& island, IslandScratch& s, ContactSides& sides) {
+void fillInboardSide(const WorldModel& model, WorldScratch& scratch, int i, Island& island, IslandScratch& s,
+                     ContactSides& sides) {
   const Contact& c = scratch.contacts[i];
   const int rows = scratch.first_row[i + 1] - scratch.first_row[i];
   const ContactEnds ends = s.ends[i];
@@ -207,8 +213,10 @@ void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, I
     const Contact& c = contacts[i];
     const ContactEnds ends = all_ends[i];
     ContactSides& sides = all_sides[n];
-    fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s.root_inertia, sides[0]);
-    fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s.root_inertia, sides[1]);
+    fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s.root_inertia,
+             sides[0]);
+    fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s.root_inertia,
+             sides[1]);
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
     if (s.sides_per_contact > 2) fillInboardSide(model, scratch, i, island, s, sides);
     island.settling = std::max(island.settling, c.settling);
@@ -272,8 +280,9 @@ void gather(const WorldModel& model, WorldScratch& scratch) {
   }
 }
 
-// For how long warm starts have to be exact to round-off: from an answer that took iterations on, until it is clear that none comes that is. One
-// that fits isn't the end of it: the impulses of a body that still slows down by 1e-13 m/s in a tick, kept, would turn it round and move it off.
+// For how long warm starts have to be exact to round-off: from an answer that took iterations on, until it is clear
+// that none comes that is. One that fits isn't the end of it: the impulses of a body that still slows down by 1e-13 m/s
+// in a tick, kept, would turn it round and move it off.
 int nextSettling(const Island& island, bool rings, double tolerance) {
   if (!(island.result.start <= tolerance)) return rings ? kRingingTicks : kSettlingTicks;
   if (island.result.method == SolveMethod::kWarmStart) return island.settling > 0 ? kSettlingTicks : 0;
@@ -284,7 +293,8 @@ int nextSettling(const Island& island, bool rings, double tolerance) {
 bool isHeldByPads(const IslandScratch& s, const Island& island, const WorldScratch& scratch) {
   if (island.contacts > kFewContacts || island.contacts <= island.movers) return false;
   const int* const order = s.order.data() + island.place;
-  return std::any_of(order, order + island.contacts, [&](int i) { return scratch.contacts[i].a.kind == SideKind::kPoint; });
+  return std::any_of(order, order + island.contacts,
+                     [&](int i) { return scratch.contacts[i].a.kind == SideKind::kPoint; });
 }
 
 double restSpeed(const Island& island, const SolverOptions& options) {
@@ -326,32 +336,6 @@ void addResult(const SolveResult& island, SolveResult& all) {
 }
 
 }  // namespace
-
-IslandScratch::IslandScratch(const WorldModel& model) {
-  const auto n = static_cast<std::size_t>(model.options.max_contacts), m = kMaxContactRows * n;
-  const std::size_t movers = moverCount(model);
-  findBlocks(model, *this);
-  if (sides_per_contact > 2) {
-    many_sides.resize(static_cast<std::size_t>(sides_per_contact) * n);
-    first_side.resize(2 * n + 1);
-  }
-  islands.reserve(n);
-  for (std::vector<int>* per_contact : {&order, &contact_island}) per_contact->resize(n);
-  near.reserve(n);
-  ends.resize(n);
-  for (std::vector<int>* per_mover : {&parent, &number, &island_of}) per_mover->resize(movers);
-  first_row.resize(2 * n + 1);
-  sides.resize(n);
-  root_inertia.resize(movers);
-  mu.resize(n);
-  for (std::vector<double>* per_row : {&q, &r, &u}) per_row->resize(m);
-  for (int t = 0; t < model.options.threads; ++t)
-    solvers.push_back(std::make_unique<SolverScratch>(solverSize(model.options.max_contacts, static_cast<int>(movers), sides_per_contact)));
-  if (model.options.threads > 1) threads = std::make_unique<IslandThreads>(model.options.threads);
-}
-
-IslandScratch::~IslandScratch() = default;
-IslandScratch::IslandScratch(IslandScratch&&) noexcept = default;
 
 void takeManySides(const Island& island, const IslandScratch& s, ContactProblem& problem) {
   const auto k = static_cast<std::size_t>(&island - s.islands.data()), n = static_cast<std::size_t>(island.contacts);

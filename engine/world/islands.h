@@ -1,9 +1,9 @@
 // islands: groups of bodies and points that contacts tie together, each a contact problem of its own.
 //
-// Two contacts are of one island when a chain of contacts links them through things that move; what is static ties nothing. Found by
-// union-find over the contacts. Islands are in the order of their first contact, contacts within one in the order of their ids, movers in the
-// order in which these name them: an island's numbers, and so its answer to the bit, don't depend on what else is in the world.
-// Source: R. Tarjan, J. ACM 22 (1975) 215-225.
+// Two contacts are of one island when a chain of contacts links them through things that move; what is static ties
+// nothing. Found by union-find over the contacts. Islands are in the order of their first contact, contacts within one
+// in the order of their ids, movers in the order in which these name them: an island's numbers, and so its answer to
+// the bit, don't depend on what else is in the world. Source: R. Tarjan, J. ACM 22 (1975) 215-225.
 #pragma once
 #include <memory>
 #include <vector>
@@ -24,7 +24,8 @@ struct Island {
   bool calm = true;             // all that moves of it is as good as at rest
   bool has_many_sides = false;  // its contacts' are in many_sides
   // Filled by solveIslands, without a value before.
-  // The solver's view: of one among several islands in IslandScratch, of the only one the world's own (scratch.h), uncopied.
+  // The solver's view: of one among several islands in IslandScratch, of the only
+  // one the world's own (scratch.h), uncopied.
   int rows;
   int* first_row;
   double *mu, *q, *r, *u;
@@ -60,7 +61,8 @@ struct IslandScratch {
   int first_block = 0;            // the first one of those movers
   std::vector<int> block_parent;  // per block: the mover of the block before it on the way to the base, -1
   std::vector<ContactSide>
-      many_sides;  // of islands in which a contact has more than two movers, from place sides_per_contact times the island's on
+      // of islands in which a contact has more than two movers, from place sides_per_contact times the island's on
+      many_sides;
   std::vector<int> first_side;     // likewise, as `first_row`
   int sides_per_contact = 2;       // at most
   std::vector<Mat3> root_inertia;  // per mover of the world: F with F F^T = I^-1, in W [kg^-1/2 m^-1]
@@ -72,8 +74,9 @@ struct IslandScratch {
 // Of an island that has them.
 void takeManySides(const Island& island, const IslandScratch& s, ContactProblem& problem);
 
-// Sorts scratch.contacts into islands, solves each from scratch.q, mu and r, and fills scratch.r, u and solve (the worst of all islands'
-// methods and residuals, the sum of their iterations), and the contacts' `settling` and `quiet`. Allocates nothing.
+// Sorts scratch.contacts into islands, solves each from scratch.q, mu and r, and fills scratch.r, u and solve
+// (the worst of all islands' methods and residuals, the sum of their iterations), and the contacts'
+// `settling` and `quiet`. Allocates nothing.
 void solveIslands(const WorldModel& model, WorldScratch& scratch);
 
 }  // namespace pincer::engine

@@ -1,6 +1,8 @@
-// Forces that joints carry: Newton's and Euler's laws for all that hangs on a joint, over the last part of the tick, at its middle.
+// Forces that joints carry: Newton's and Euler's laws for all that hangs on a joint, over
+// the last part of the tick, at its middle.
 //
-//   f = sum over bodies beyond the joint of (m (v+ - v)/h - m g - f_applied) - contacts' impulses/h,     moments likewise about J
+//   f = sum over bodies beyond the joint of (m (v+ - v)/h - m g - f_applied) - contacts'
+//   impulses/h,     moments likewise about J
 #include <algorithm>
 #include <limits>
 #include <vector>
@@ -16,7 +18,8 @@ constexpr char kFarSide = 1;
 
 bool isFree(const WorldModel& model, int body) { return body >= 0 && model.bodies[body].dynamic; }
 
-// Marks the bodies that hang on the joint's body `first`. False if the joint's other one is among them, or what doesn't move.
+// Marks the bodies that hang on the joint's body `first`. False if the joint's other
+// one is among them, or what doesn't move.
 bool findBeyond(const WorldModel& model, int joint, int first, std::vector<char>& beyond) {
   std::fill(beyond.begin(), beyond.end(), char{0});
   if (!isFree(model, first)) return false;
@@ -48,15 +51,20 @@ struct Wrench {
 };
 
 // Inertia forces of a body less its weight.
-void addInertia(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int i, const Vec3& p_WJ, Wrench& sum) {
+void addInertia(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int i, const Vec3& p_WJ,
+                Wrench& sum) {
   const BodyModel& body = model.bodies[i];
   const BodyScratch& s = scratch.bodies[i];
   const BodyState& end = state.bodies[i];
-  const auto angular = [&](const Vec3& w_W) { return Vec3(s.X_WI_mid.q * body.moments.cwiseProduct(s.X_WI_mid.q.conjugate() * w_W)); };
+  const auto angular = [&](const Vec3& w_W) {
+    return Vec3(s.X_WI_mid.q * body.moments.cwiseProduct(s.X_WI_mid.q.conjugate() * w_W));
+  };
   const bool rests = end.v_W.isZero(0) && end.L_W.isZero(0);
-  const Vec3 w_end_W = bodyAngularVelocity(model, state, i), w_mid_W = rests ? Vec3(Vec3::Zero()) : Vec3(0.5 * (s.start.w_W + w_end_W));
+  const Vec3 w_end_W = bodyAngularVelocity(model, state, i),
+             w_mid_W = rests ? Vec3(Vec3::Zero()) : Vec3(0.5 * (s.start.w_W + w_end_W));
   const Vec3 dv_W = rests ? Vec3(Vec3::Zero()) : Vec3(end.v_W - s.start.v_W);
-  const Vec3 dL_W = rests ? Vec3(Vec3::Zero()) : Vec3(angular(w_end_W - s.start.w_W) + scratch.h * w_mid_W.cross(angular(w_mid_W)));
+  const Vec3 dL_W =
+      rests ? Vec3(Vec3::Zero()) : Vec3(angular(w_end_W - s.start.w_W) + scratch.h * w_mid_W.cross(angular(w_mid_W)));
   sum.add(s.X_WI_mid.p - p_WJ, body.mass * (dv_W / scratch.h - scratch.gravity_W), dL_W / scratch.h);
 }
 
@@ -64,7 +72,8 @@ void addInertia(const WorldModel& model, const WorldState& state, const WorldScr
 
 JointLoad jointLoadAt(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int joint,
                       const AppliedForces& applied) {
-  PINCER_DEMAND(joint >= 0 && joint < std::ssize(model.joint_places), "jointLoadAt: the joint is one that addJoint returned");
+  PINCER_DEMAND(joint >= 0 && joint < std::ssize(model.joint_places),
+                "jointLoadAt: the joint is one that addJoint returned");
   if (!(scratch.h > 0)) return {};
   const int place = model.joint_places[joint].joint;
   const JointModel& own = model.joints[place];
@@ -79,7 +88,8 @@ JointLoad jointLoadAt(const WorldModel& model, const WorldState& state, const Wo
   for (int i = 0; i < static_cast<int>(model.bodies.size()); ++i) {
     if (beyond[i] != kFarSide) continue;
     addInertia(model, state, scratch, i, X_WJ.p, sum);
-    if (!applied.forces.empty()) sum.add(scratch.bodies[i].X_WI_mid.p - X_WJ.p, -applied.forces[i].f_W, -applied.forces[i].tau_W);
+    if (!applied.forces.empty())
+      sum.add(scratch.bodies[i].X_WI_mid.p - X_WJ.p, -applied.forces[i].f_W, -applied.forces[i].tau_W);
   }
   const auto takeAway = [&](const Contact& c, const Side& side, double sign) {
     if (side.kind != SideKind::kBody || beyond[side.index] != kFarSide) return;

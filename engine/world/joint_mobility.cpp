@@ -83,7 +83,8 @@ int placeInGroup(const JointGroup& g, int body) {
 }
 
 // The row's S^T g, in the order of the group's bodies.
-void scaledRow(const WorldModel& model, const WorldScratch& scratch, const JointGroup& g, const JointRow& row, double* out) {
+void scaledRow(const WorldModel& model, const WorldScratch& scratch, const JointGroup& g, const JointRow& row,
+               double* out) {
   std::fill(out, out + 6 * g.bodies.size(), 0.0);
   for (int side = 0; side < 2; ++side) {
     const int body = side == 0 ? row.a : row.b;
@@ -91,7 +92,8 @@ void scaledRow(const WorldModel& model, const WorldScratch& scratch, const Joint
     const double sign = side == 0 ? 1 : -1;
     const RootOfMass S = rootOfMass(model.bodies[body], scratch.bodies[body].X_WI_mid.q);
     double* const to = out + std::ptrdiff_t{6} * placeInGroup(g, body);
-    const Vec3 lin = sign * S.linear * row.n_W, ang = sign * (S.angular.transpose() * (side == 0 ? row.ang_a_W : row.ang_b_W));
+    const Vec3 lin = sign * S.linear * row.n_W,
+               ang = sign * (S.angular.transpose() * (side == 0 ? row.ang_a_W : row.ang_b_W));
     for (int i = 0; i < 3; ++i) {
       to[i] += lin[i];
       to[3 + i] += ang[i];
@@ -100,8 +102,8 @@ void scaledRow(const WorldModel& model, const WorldScratch& scratch, const Joint
 }
 
 // L L^T of 1 + sum d d^T / R, in place of N: its columns divided by L^T from the right.
-void applyDampers(const WorldModel& model, const WorldScratch& scratch, const JointGroup& g, const JointGroupScratch& group, int size,
-                  int free, double* N) {
+void applyDampers(const WorldModel& model, const WorldScratch& scratch, const JointGroup& g,
+                  const JointGroupScratch& group, int size, int free, double* N) {
   double mass[kMoverFreedoms][kMoverFreedoms] = {};
   for (int i = 0; i < free; ++i) mass[i][i] = 1;
   for (const JointRow& row : group.rows) {
@@ -131,7 +133,8 @@ void applyDampers(const WorldModel& model, const WorldScratch& scratch, const Jo
 
 }  // namespace
 
-void factoriseInverseMass(const WorldModel& model, const WorldScratch& scratch, const JointGroup& g, JointGroupScratch& group) {
+void factoriseInverseMass(const WorldModel& model, const WorldScratch& scratch, const JointGroup& g,
+                          JointGroupScratch& group) {
   const int size = 6 * static_cast<int>(g.bodies.size());
   std::fill(group.factor.begin(), group.factor.end(), 0.0);
   if (size > kMostGroupFreedoms) return;
@@ -164,11 +167,12 @@ void factoriseInverseMass(const WorldModel& model, const WorldScratch& scratch, 
   }
 }
 
-void addJointedSide(const WorldModel& model, const WorldScratch& scratch, const Contact& c, int rows, double sign, int body,
-                    const Vec3& arm_W, ContactSide& out) {
+void addJointedSide(const WorldModel& model, const WorldScratch& scratch, const Contact& c, int rows, double sign,
+                    int body, const Vec3& arm_W, ContactSide& out) {
   const int n = model.bodies[body].joint_group;
   const JointGroupScratch& group = scratch.joint_groups[n];
-  const double* const F = group.factor.data() + std::ptrdiff_t{6} * kMoverFreedoms * placeInGroup(model.joint_groups[n], body);
+  const double* const F =
+      group.factor.data() + std::ptrdiff_t{6} * kMoverFreedoms * placeInGroup(model.joint_groups[n], body);
   for (int k = 0; k < rows; ++k) {
     const Vec3 lin = k < 3 ? Vec3(c.R_WC.col(k)) : Vec3::Zero();
     const Vec3 ang = k < 3 ? Vec3(arm_W.cross(lin)) : Vec3(radiusOf(c, k) * axisOf(c, k));

@@ -5,7 +5,8 @@
 
 namespace pincer::engine {
 
-constexpr double kGripSpeed = 1;         // most of w h F: what a brake can hold doesn't count among the problem's speeds [m/s, rad/s]
+// most of w h F: what a brake can hold doesn't count among the problem's speeds [m/s, rad/s]
+constexpr double kGripSpeed = 1;
 constexpr double kBrakeRoundOff = 1e-9;  // of a force at its limit: ten times the solver's tolerance
 
 inline const TreeModel& treeOf(const WorldModel& model, const JointRowScratch& row) { return model.trees[row.tree]; }
@@ -15,7 +16,8 @@ inline std::uint64_t idOfRow(int slot) { return std::uint64_t{2} << 62 | static_
 inline double rateOf(const TreeModel& tree, const TreePlace& place, int coordinate, std::span<const double> u) {
   return place.coordinates[coordinate].share * u[tree.coordinates[coordinate].column];
 }
-inline double lengthRate(const TreeModel& tree, const TreePlace& place, const TreeDrive& drive, std::span<const double> u) {
+inline double lengthRate(const TreeModel& tree, const TreePlace& place, const TreeDrive& drive,
+                         std::span<const double> u) {
   double rate = 0;
   for (const TreeDrive::Term& term : drive.terms) rate += term.factor * rateOf(tree, place, term.coordinate, u);
   return rate;

@@ -15,9 +15,10 @@ namespace pincer::engine {
 namespace {
 
 constexpr int kRowsPerCoordinate = 3;
-constexpr double kLateAtStop = 1.5;  // times this part of the tick: what gets to its stop so late may still get there in it
-constexpr double kAtHit = 1e-9;      // in an impact: what is left of the root [m, rad]
-constexpr double kAtStop = 1e-12;    // [m, rad]
+// times this part of the tick: what gets to its stop so late may still get there in it
+constexpr double kLateAtStop = 1.5;
+constexpr double kAtHit = 1e-9;    // in an impact: what is left of the root [m, rad]
+constexpr double kAtStop = 1e-12;  // [m, rad]
 
 int slotOf(const TreeModel& tree, int coordinate, JointRowKind kind) {
   return kRowsPerCoordinate * (tree.first_coordinate + coordinate) + static_cast<int>(kind);
@@ -27,14 +28,16 @@ int slotOf(const TreeModel& tree, int coordinate, JointRowKind kind) {
 struct StopGap {
   double mid, end, rate, free_rate;  // out of the stop
 };
-StopGap gapOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const JointRowScratch& row, bool is_pushed) {
+StopGap gapOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const JointRowScratch& row,
+              bool is_pushed) {
   const TreeModel& tree = treeOf(model, row);
   const TreeScratch& s = scratch.trees[row.tree];
   const TreeCoordinate& own = tree.coordinates[row.element];
   const double share = s.course.mid.coordinates[row.element].share, h = scratch.h;
   const double q = state.tree_q[tree.first_q + own.q], u = state.tree_v[tree.first_v + own.column];
   const double rate = share * u, free_rate = share * s.course.u_free[own.column];
-  const double way = is_pushed ? wayOf(s.course, {s.gained, h, s.closing}, own.column, u) : s.course.way_free[own.column];
+  const double way =
+      is_pushed ? wayOf(s.course, {s.gained, h, s.closing}, own.column, u) : s.course.way_free[own.column];
   const bool is_lower = row.kind == JointRowKind::kLower;
   const double sign = is_lower ? 1 : -1, limit = is_lower ? own.traits.lower : own.traits.upper;
   return {sign * (q + 0.5 * h * rate - limit), sign * (q + share * way - limit), sign * rate, sign * free_rate};
@@ -76,7 +79,8 @@ void putStop(const WorldModel& model, const WorldState& state, int slot, JointRo
     c->material.restitution = treeOf(model, row).coordinates[row.element].traits.restitution;
 }
 
-void putFriction(const WorldModel& model, const WorldState& state, int slot, JointRowScratch& row, WorldScratch& scratch) {
+void putFriction(const WorldModel& model, const WorldState& state, int slot, JointRowScratch& row,
+                 WorldScratch& scratch) {
   if (!row.wanted) return;
   const TreeModel& tree = treeOf(model, row);
   TreeScratch& s = scratch.trees[row.tree];
@@ -105,7 +109,8 @@ void unlock(const TreeModel& tree, TreeScratch& s, WorldScratch& scratch) {
   s.has_locked = false;
 }
 
-// Finds what holds the locked joints of a tree; unlocks them all if one is pushed, or would have to give more than it has.
+// Finds what holds the locked joints of a tree; unlocks them all if one is
+// pushed, or would have to give more than it has.
 bool reviseLocked(const WorldState& state, const TreeModel& tree, TreeScratch& s, WorldScratch& scratch) {
   if (!s.has_locked) return false;
   holdingImpulses(tree, s.course, treeRates(tree, state), s.gained, s.impulse, s.row, s.held);
@@ -122,11 +127,12 @@ bool reviseLocked(const WorldState& state, const TreeModel& tree, TreeScratch& s
 }
 
 // A brake that holds, and needs no row to do so.
-bool mayLock(const WorldState& state, const TreeModel& tree, const TreeScratch& s, const JointRowScratch& row, double rate) {
+bool mayLock(const WorldState& state, const TreeModel& tree, const TreeScratch& s, const JointRowScratch& row,
+             double rate) {
   constexpr double kShare = 0.5, kSlow = 1e-8;  // of its force; [rad/s, m/s]
   const TreeCoordinate& own = tree.coordinates[row.element];
-  return !tree.has_couplings && std::abs(row.impulse_W.x()) <= kShare * row.limit && std::abs(rate) <= kSlow && !s.pressed[own.column] &&
-         isAwayFromStops(state, tree, own);
+  return !tree.has_couplings && std::abs(row.impulse_W.x()) <= kShare * row.limit && std::abs(rate) <= kSlow &&
+         !s.pressed[own.column] && isAwayFromStops(state, tree, own);
 }
 
 // A joint that was to go on in one direction turned round, or stopped.
@@ -173,7 +179,8 @@ int jointRowsOf(const WorldModel& model) {
 
 void sizeJointRows(const WorldModel& model, WorldScratch& scratch) {
   if (model.trees.empty()) return;
-  scratch.joint_rows.resize(static_cast<std::size_t>(kRowsPerCoordinate * model.tree_coordinate_count) + model.drives.size() + 1);
+  scratch.joint_rows.resize(static_cast<std::size_t>(kRowsPerCoordinate * model.tree_coordinate_count) +
+                            model.drives.size() + 1);
   scratch.drives.resize(model.drives.size());
   for (int t = 0; t < static_cast<int>(model.trees.size()); ++t) {
     const TreeModel& tree = model.trees[t];
@@ -187,7 +194,8 @@ void sizeJointRows(const WorldModel& model, WorldScratch& scratch) {
       }
     }
     for (int d = 0; d < static_cast<int>(tree.drives.size()); ++d) {
-      JointRowScratch& row = scratch.joint_rows[kRowsPerCoordinate * model.tree_coordinate_count + tree.drives[d].drive];
+      JointRowScratch& row =
+          scratch.joint_rows[kRowsPerCoordinate * model.tree_coordinate_count + tree.drives[d].drive];
       row.kind = JointRowKind::kDrive;
       row.tree = t;
       row.element = d;
@@ -206,14 +214,16 @@ void startJointRows(const WorldModel& model, const WorldState& state, WorldScrat
     unlock(tree, s, scratch);
     for (std::size_t d = 0; d < tree.drives.size(); ++d) startDrive(model, state, tree.drives[d], scratch, s.drives[d]);
     for (int i = 0; i < tree.coordinateCount(); ++i) {
-      const double friction = tree.coordinates[i].traits.friction, u = state.tree_v[tree.first_v + tree.coordinates[i].column];
+      const double friction = tree.coordinates[i].traits.friction,
+                   u = state.tree_v[tree.first_v + tree.coordinates[i].column];
       s.constant[i] = 0;
       if (friction == 0) continue;
       const BrakeMemory memory = state.brakes[tree.first_coordinate + i];
       if (memory == BrakeMemory::kForward && u != 0) s.constant[i] = -friction;
       if (memory == BrakeMemory::kBackward && u != 0) s.constant[i] = friction;
       JointRowScratch& row = scratch.joint_rows[slotOf(tree, i, JointRowKind::kFriction)];
-      row.locked = memory == BrakeMemory::kLocks && tree.loops.empty() && isAwayFromStops(state, tree, tree.coordinates[i]);
+      row.locked =
+          memory == BrakeMemory::kLocks && tree.loops.empty() && isAwayFromStops(state, tree, tree.coordinates[i]);
       row.wanted = !row.locked && s.constant[i] == 0 && scratch.h > 0;
       s.locked[tree.coordinates[i].column] = row.locked ? 1 : 0;
       s.has_locked = s.has_locked || row.locked;
@@ -245,16 +255,19 @@ void fillBrake(const JointRowScratch& row, double* q, double* r) {
 void noteStopHits(const WorldModel& model, WorldScratch& scratch) {
   for (std::size_t slot = 0; slot < scratch.joint_rows.size(); ++slot) {
     const JointRowScratch& row = scratch.joint_rows[slot];
-    if (row.hit == JointRowScratch::Hit::kNone || scratch.impact_pairs.size() == scratch.impact_pairs.capacity()) continue;
+    if (row.hit == JointRowScratch::Hit::kNone || scratch.impact_pairs.size() == scratch.impact_pairs.capacity())
+      continue;
     const int body = treeOf(model, row).links[treeOf(model, row).coordinates[row.element].link].body;
     scratch.impact_pairs.push_back({body, body, row.hit == JointRowScratch::Hit::kLands, static_cast<int>(slot)});
   }
 }
 
-double timeOfStop(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const JointRowScratch& row) {
+double timeOfStop(const WorldModel& model, const WorldState& state, const WorldScratch& scratch,
+                  const JointRowScratch& row) {
   const StopGap gap = gapOf(model, state, scratch, row, true);
   const double h = scratch.h, phi = gap.mid - 0.5 * h * gap.rate;
-  if (scratch.trees[row.tree].closing) return gap.end < 0 ? h * phi / (phi - gap.end) : std::numeric_limits<double>::infinity();
+  if (scratch.trees[row.tree].closing)
+    return gap.end < 0 ? h * phi / (phi - gap.end) : std::numeric_limits<double>::infinity();
   const double bent = gap.end - phi - h * gap.rate;  // phi(t) = phi + t rate + (t/h)^2 bent
   const double root2 = gap.rate * gap.rate * h * h - 4 * bent * phi;
   if (root2 < 0) return std::numeric_limits<double>::infinity();
@@ -277,7 +290,8 @@ bool reviseJointRows(const WorldModel& model, const WorldState& state, WorldScra
       is_wrong = true;
     } else if (row.kind == JointRowKind::kFriction) {
       is_wrong = reviseFriction(model, row, scratch) || is_wrong;
-    } else if (!row.wanted && row.hit == JointRowScratch::Hit::kNone && hasStop(treeOf(model, row).coordinates[row.element], row.kind) &&
+    } else if (!row.wanted && row.hit == JointRowScratch::Hit::kNone &&
+               hasStop(treeOf(model, row).coordinates[row.element], row.kind) &&
                gapOf(model, state, scratch, row, true).end < -kAtStop) {
       is_wrong = row.wanted = true;
     }
@@ -321,13 +335,18 @@ void rememberJointRows(const WorldModel& model, WorldState& state, WorldScratch&
     const TreeModel& tree = treeOf(model, row);
     const TreeScratch& s = scratch.trees[row.tree];
     const double rate = s.rests ? 0 : endRate(tree, s, row.element);
-    row.end.v_W = row.kind == JointRowKind::kFriction ? Vec3(rate, 0, 0) : Vec3(0, 0, row.kind == JointRowKind::kUpper ? -rate : rate);
+    row.end.v_W = row.kind == JointRowKind::kFriction ? Vec3(rate, 0, 0)
+                                                      : Vec3(0, 0, row.kind == JointRowKind::kUpper ? -rate : rate);
     if (row.kind != JointRowKind::kFriction || row.locked) continue;
     const double r = row.touched ? row.impulse_W.x() : 0;
-    const bool slips = row.wanted ? std::abs(r) >= (1 - kBrakeRoundOff) * row.limit && rate * r < 0 : s.constant[row.element] != 0;
+    const bool slips =
+        row.wanted ? std::abs(r) >= (1 - kBrakeRoundOff) * row.limit && rate * r < 0 : s.constant[row.element] != 0;
     BrakeMemory& memory = state.brakes[tree.first_coordinate + row.element];
     const bool locks = !slips && row.wanted && row.touched && mayLock(state, tree, s, row, rate);
-    memory = locks ? BrakeMemory::kLocks : !slips ? BrakeMemory::kHolds : rate > 0 ? BrakeMemory::kForward : BrakeMemory::kBackward;
+    memory = locks      ? BrakeMemory::kLocks
+             : !slips   ? BrakeMemory::kHolds
+             : rate > 0 ? BrakeMemory::kForward
+                        : BrakeMemory::kBackward;
   }
 }
 
@@ -338,7 +357,9 @@ JointReport jointAt(const WorldModel& model, const WorldScratch& scratch, int jo
   const TreeModel& tree = model.trees[place.tree];
   const auto forceOf = [&](JointRowKind kind) {
     const JointRowScratch& row = scratch.joint_rows[slotOf(tree, place.coordinate, kind)];
-    return row.locked || (row.wanted && row.touched) ? (row.isBrake() ? row.impulse_W.x() : row.impulse_W.z()) / scratch.h : 0.0;
+    return row.locked || (row.wanted && row.touched)
+               ? (row.isBrake() ? row.impulse_W.x() : row.impulse_W.z()) / scratch.h
+               : 0.0;
   };
   const double lower = forceOf(JointRowKind::kLower), upper = forceOf(JointRowKind::kUpper);
   report.stop_force = lower - upper;

@@ -80,7 +80,8 @@ class RowWriter {
     const Quat q = b_.X_WJ.q.conjugate() * a_.X_WJ.q;
     const Vec3 twist_J = (q.w() < 0 ? -2.0 : 2.0) * q.vec();
     // Of a pivot any angle is allowed: what its axes miss is the turn of a's axis.
-    const Vec3 miss_W = kind == JointKind::kPivot ? Vec3(R_WJ_.col(2).cross(a_.X_WJ.q * Vec3::UnitZ())) : Vec3(R_WJ_ * twist_J);
+    const Vec3 miss_W =
+        kind == JointKind::kPivot ? Vec3(R_WJ_.col(2).cross(a_.X_WJ.q * Vec3::UnitZ())) : Vec3(R_WJ_ * twist_J);
     for (int k = 0; k < (kind == JointKind::kPivot ? 2 : 3); ++k) turn(R_WJ_.col(k), R_WJ_.col(k).dot(miss_W));
   }
 
@@ -90,7 +91,9 @@ class RowWriter {
   }
 
  private:
-  void point(const Vec3& n_W, double e) { add({a_.body, b_.body, n_W, a_.arm_W.cross(n_W), b_.arm_W.cross(n_W), Vec3::Zero(), 0, 0, e}); }
+  void point(const Vec3& n_W, double e) {
+    add({a_.body, b_.body, n_W, a_.arm_W.cross(n_W), b_.arm_W.cross(n_W), Vec3::Zero(), 0, 0, e});
+  }
   void turn(const Vec3& m_W, double e) { add({a_.body, b_.body, Vec3::Zero(), m_W, m_W, m_W, 0, 0, e}); }
   void add(const JointRow& row) {
     PINCER_ASSERT(group_.rows.size() < group_.rows.capacity());  // the tick allocates nothing
@@ -131,7 +134,8 @@ void factorise(const WorldModel& model, const JointMoment& moment, JointGroupScr
       for (int i = 0; i < m; ++i) group.A[i + j * m] += response(group.rows[i], body, mlin, mang);
     }
   }
-  for (int k = 0; k < m; ++k) group.A[k * (m + 1)] = group.A[k * (m + 1)] * (1 + kJointRegularisation) + group.rows[k].softness;
+  for (int k = 0; k < m; ++k)
+    group.A[k * (m + 1)] = group.A[k * (m + 1)] * (1 + kJointRegularisation) + group.rows[k].softness;
   group.sound = m > 0 && factoriseLu(group.A.data(), m, group.pivots.data());
 }
 
@@ -147,8 +151,10 @@ template <typename Use>
 void forEachImpulse(const WorldModel& model, const JointGroupScratch& group, const Use& use) {
   for (std::size_t k = 0; k < group.rows.size(); ++k) {
     const JointRow& row = group.rows[k];
-    if (row.a >= 0 && model.bodies[row.a].dynamic) use(row.a, Vec3(group.lambda[k] * row.n_W), Vec3(group.lambda[k] * row.ang_a_W));
-    if (row.b >= 0 && model.bodies[row.b].dynamic) use(row.b, Vec3(-group.lambda[k] * row.n_W), Vec3(-group.lambda[k] * row.ang_b_W));
+    if (row.a >= 0 && model.bodies[row.a].dynamic)
+      use(row.a, Vec3(group.lambda[k] * row.n_W), Vec3(group.lambda[k] * row.ang_a_W));
+    if (row.b >= 0 && model.bodies[row.b].dynamic)
+      use(row.b, Vec3(-group.lambda[k] * row.n_W), Vec3(-group.lambda[k] * row.ang_b_W));
   }
 }
 
@@ -157,8 +163,10 @@ const Motion kRest;
 const Motion& startOf(const WorldScratch& scratch, int body) { return body < 0 ? kRest : scratch.bodies[body].start; }
 const Motion& freeOf(const WorldScratch& scratch, int body) { return body < 0 ? kRest : scratch.bodies[body].free; }
 
-// h/2 (dG/dt) v: what the row's velocity is by the end of the tick if it is 0 with the directions of the middle. A slider's point also slides past b.
-double turnOfRow(const JointRow& row, const WorldScratch& scratch, const Vec3& arm_a_W, const Vec3& arm_b_W, bool slides) {
+// h/2 (dG/dt) v: what the row's velocity is by the end of the tick if it is 0 with the directions of the
+// middle. A slider's point also slides past b.
+double turnOfRow(const JointRow& row, const WorldScratch& scratch, const Vec3& arm_a_W, const Vec3& arm_b_W,
+                 bool slides) {
   const Motion &a = startOf(scratch, row.a), &b = startOf(scratch, row.b);
   const Vec3 v_rel = a.v_W + a.w_W.cross(arm_a_W) - b.v_W - b.w_W.cross(arm_b_W);
   Vec3 change = Vec3::Zero();
@@ -177,7 +185,8 @@ void setDamping(const WorldModel& model, const WorldScratch& scratch, double dam
     const int body = side == 0 ? row.a : row.b;
     if (body < 0 || !model.bodies[body].dynamic) continue;
     const Vec3& ang = side == 0 ? row.ang_a_W : row.ang_b_W;
-    mobility += model.bodies[body].inverse_mass * row.n_W.squaredNorm() + ang.dot(scratch.bodies[body].inverse_inertia_W * ang);
+    mobility +=
+        model.bodies[body].inverse_mass * row.n_W.squaredNorm() + ang.dot(scratch.bodies[body].inverse_inertia_W * ang);
   }
   const bool soft = hd * mobility < 1;
   row.softness = (soft ? 2 : 1) / hd;
@@ -186,7 +195,8 @@ void setDamping(const WorldModel& model, const WorldScratch& scratch, double dam
 
 void writeGroup(const WorldModel& model, const JointGroup& g, const JointMoment& moment, JointGroupScratch& group) {
   group.rows.clear();
-  for (int j = g.first; j < g.first + g.count; ++j) RowWriter(model.joints[j], moment, group).writeAll(model.joints[j].kind);
+  for (int j = g.first; j < g.first + g.count; ++j)
+    RowWriter(model.joints[j], moment, group).writeAll(model.joints[j].kind);
 }
 
 void predictGroup(const WorldModel& model, const JointGroup& g, WorldScratch& scratch, JointGroupScratch& group) {

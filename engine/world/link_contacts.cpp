@@ -71,8 +71,8 @@ Vec3 turnOfCarrier(const WorldModel& model, const WorldScratch& scratch, const C
 double turnWithCarrier(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
   const Vec3 w_W = turnOfCarrier(model, scratch, c), &w_a_W = c.mover_a->start.w_W, &w_b_W = c.mover_b->start.w_W;
   const Vec3 v_W = c.R_WC * c.v_start_C.head<3>();
-  const Vec3 way_W = w_W.cross(2 * v_W - w_a_W.cross(c.arm_a_W) + w_b_W.cross(c.arm_b_W)) - (w_a_W - w_W).cross(w_W.cross(c.arm_a_W)) +
-                     (w_b_W - w_W).cross(w_W.cross(c.arm_b_W));
+  const Vec3 way_W = w_W.cross(2 * v_W - w_a_W.cross(c.arm_a_W) + w_b_W.cross(c.arm_b_W)) -
+                     (w_a_W - w_W).cross(w_W.cross(c.arm_a_W)) + (w_b_W - w_W).cross(w_W.cross(c.arm_b_W));
   return 0.5 * scratch.h * c.n_W().dot(way_W);
 }
 

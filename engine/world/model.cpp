@@ -32,8 +32,8 @@ void sortSpecialPairs(std::vector<PairModel>& pairs) {
 
 using IndexPair = std::pair<int, int>;
 
-// How many others of those that `counts` each body can meet: one of the two moves, and the pair isn't excluded. Counted, not listed: of
-// thousands of bodies there are millions of pairs.
+// How many others of those that `counts` each body can meet: one of the two moves, and the pair isn't excluded.
+// Counted, not listed: of thousands of bodies there are millions of pairs.
 template <class Counts>
 std::vector<int> partnersOf(const WorldModel& model, const std::vector<IndexPair>& excluded, const Counts& counts) {
   const int n = static_cast<int>(model.bodies.size());
@@ -57,15 +57,19 @@ std::vector<int> partnersOf(const WorldModel& model, const std::vector<IndexPair
   return partners;
 }
 
-// Marks the bodies that something can touch, and prepares the meshes that are touched as flat triangles (contact::preparePair).
+// Marks the bodies that something can touch, and prepares the meshes that are touched
+// as flat triangles (contact::preparePair).
 void findWhoMayTouch(WorldModel& model, const std::vector<IndexPair>& excluded) {
   const auto any = [](const BodyModel&) { return true; };
-  const auto is_flat = [](const ColliderModel& c) { return !isSupport(c.shape) && !std::holds_alternative<contact::Sphere>(c.shape); };
+  const auto is_flat = [](const ColliderModel& c) {
+    return !isSupport(c.shape) && !std::holds_alternative<contact::Sphere>(c.shape);
+  };
   const auto has_flat = [&](const BodyModel& body) {
     const auto shapes = collidersOf(model, body);
     return std::any_of(shapes.begin(), shapes.end(), is_flat);
   };
-  const std::vector<int> partners = partnersOf(model, excluded, any), flat_partners = partnersOf(model, excluded, has_flat);
+  const std::vector<int> partners = partnersOf(model, excluded, any),
+                         flat_partners = partnersOf(model, excluded, has_flat);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     BodyModel& body = model.bodies[i];
     body.may_touch = body.may_touch || partners[i] > 0;
@@ -86,7 +90,8 @@ Material materialOf(const WorldModel& model, const ColliderModel& a, const Colli
 
 Material materialOf(const WorldModel& model, int a, int b) {
   PINCER_ASSERT(a < b);  // as above
-  return materialOf(model, model.colliders[model.bodies[a].first_collider], model.colliders[model.bodies[b].first_collider]);
+  return materialOf(model, model.colliders[model.bodies[a].first_collider],
+                    model.colliders[model.bodies[b].first_collider]);
 }
 
 Material combine(const Material& a, const Material& b, Combination rule) {
@@ -136,10 +141,10 @@ int shapeBits(const WorldModel& model) {
   while (1 << bits < most) ++bits;
   const int bodies = static_cast<int>(model.bodies.size());
   if (bits <= kNumberBits && bodies <= kMostNumbered >> bits) return bits;
-  throw InputError(
-      fmt::format("{} bodies, of which one has {} shapes: contacts can tell apart {} bodies of so many shapes, {} in all. Use "
-                  "fewer shapes per body, or several worlds.",
-                  bodies, most, kMostNumbered >> std::min(bits, kNumberBits), kMostNumbered));
+  throw InputError(fmt::format(
+      "{} bodies, of which one has {} shapes: contacts can tell apart {} bodies of so many shapes, {} in all. Use "
+      "fewer shapes per body, or several worlds.",
+      bodies, most, kMostNumbered >> std::min(bits, kNumberBits), kMostNumbered));
 }
 
 // Of the whole scene; the fewest are those of a hand-sized one.
@@ -156,26 +161,30 @@ WorldBuilder::WorldBuilder(const WorldOptions& options) {
   requireRange("tick", options.h, 1e-5, 1e-2, "The tick is in seconds; 0.001 is the usual one.");
   requireRange("contact_margin", options.contact_margin, 1e-9, 1, "It is in metres; 0.001 suits hand-sized bodies.");
   if (options.max_contacts != 0)
-    requireRange("max_contacts", options.max_contacts, 4, kMostContacts, "0 takes as many as the bodies of the scene may well have.");
+    requireRange("max_contacts", options.max_contacts, 4, kMostContacts,
+                 "0 takes as many as the bodies of the scene may well have.");
   requireRange("threads", options.threads, 1, 16, "1 suits hand-sized scenes; more pay where many heaps lie apart.");
   if (options.solver.accuracy != 0)
     requireRange("solver.accuracy", options.solver.accuracy, 1e-12, 1,
                  "In m/s: 1e-6 is the usual one, 0 is exact, 1e-3 suits heaps that are only looked at.");
   requireRange("solver.tolerance", options.solver.tolerance, 1e-14, 1e-2, "1e-10 is the usual one.");
   if (options.solver.budget != 0)
-    requireRange("solver.budget", options.solver.budget, 1e-6, 10, "In seconds; half a tick leaves time for everything else.");
+    requireRange("solver.budget", options.solver.budget, 1e-6, 10,
+                 "In seconds; half a tick leaves time for everything else.");
   if (options.position_tolerance != 0)
-    requireRange("position_tolerance", options.position_tolerance, 1e-12, 1, "In metres; 1e-6 is a micrometre per tick.");
+    requireRange("position_tolerance", options.position_tolerance, 1e-12, 1,
+                 "In metres; 1e-6 is a micrometre per tick.");
   requireRange("max_parts", options.max_parts, 2, 1024, "16 suits a tick of a millisecond.");
-  if (!options.gravity_W.allFinite()) throw InputError("gravity isn't finite. Give three numbers in m/s^2, for example [0, 0, -9.81].");
+  if (!options.gravity_W.allFinite())
+    throw InputError("gravity isn't finite. Give three numbers in m/s^2, for example [0, 0, -9.81].");
   model_.options = options;
 }
 
 int WorldBuilder::addBody(const BodySpec& spec) {
   if (model_.bodies.size() == kMostNumbered)
-    throw InputError(
-        fmt::format("body \"{}\": the world has {} bodies already, the most that its contacts can tell apart. Use several worlds.",
-                    spec.name, kMostNumbered));
+    throw InputError(fmt::format(
+        "body \"{}\": the world has {} bodies already, the most that its contacts can tell apart. Use several worlds.",
+        spec.name, kMostNumbered));
   if (spec.driven && spec.dynamic)
     throw InputError(fmt::format("body \"{}\": it can't be both dynamic and driven. Choose one.", spec.name));
   const int number = static_cast<int>(model_.bodies.size());
@@ -191,21 +200,29 @@ int WorldBuilder::addBody(const BodySpec& spec) {
 int WorldBuilder::addPoint(const DrivenPointModel& point) {
   if (model_.points.size() == kMostNumbered)
     throw InputError(
-        fmt::format("{}: the world has {} driven points already, the most that its contacts can tell apart.", point.name, kMostNumbered));
+        fmt::format("{}: the world has {} driven points already, the most that its contacts can tell apart.",
+                    point.name, kMostNumbered));
   requireRange(point.name + ".mass", point.mass, 0, 1e6, "A proxy's mass is zero or positive, in kilograms.");
-  requireRange(point.name + ".twist_stiffness", point.twist_stiffness, 0, 1e6, "In N m/rad; a fingertip has about 0.3.");
+  requireRange(point.name + ".twist_stiffness", point.twist_stiffness, 0, 1e6,
+               "In N m/rad; a fingertip has about 0.3.");
   requireRange(point.name + ".twist_damping", point.twist_damping, 0, 1e6, "In N m s/rad; 0.001 suits a fingertip.");
-  requireRange(point.name + ".turn_stiffness", point.turn_stiffness, 0, 1e6, "In N m/rad; a gripper's finger has about 50.");
+  requireRange(point.name + ".turn_stiffness", point.turn_stiffness, 0, 1e6,
+               "In N m/rad; a gripper's finger has about 50.");
   requireRange(point.name + ".turn_damping", point.turn_damping, 0, 1e6,
                "In N m s/rad; a thousandth of the stiffness damps it within some ticks.");
   if (point.turn_stiffness + point.turn_damping > 0 && point.twist_stiffness + point.twist_damping > 0)
-    throw InputError(point.name + ": it turns against a spring about every axis (turn_stiffness) and twists against another. Keep one.");
+    throw InputError(
+        point.name +
+        ": it turns against a spring about every axis (turn_stiffness) and twists against another. Keep one.");
   for (int axis = 0; axis < 3; ++axis) {
-    requireRange(fmt::format("{}.stiffness[{}]", point.name, axis), point.stiffness[axis], 0, 1e9, "In N/m; 1000 suits a fingertip.");
-    requireRange(fmt::format("{}.damping[{}]", point.name, axis), point.damping[axis], 0, 1e6, "In N s/m; 5 suits a fingertip.");
+    requireRange(fmt::format("{}.stiffness[{}]", point.name, axis), point.stiffness[axis], 0, 1e9,
+                 "In N/m; 1000 suits a fingertip.");
+    requireRange(fmt::format("{}.damping[{}]", point.name, axis), point.damping[axis], 0, 1e6,
+                 "In N s/m; 5 suits a fingertip.");
     if (!point.locked[axis] && point.mass <= 0 && point.stiffness[axis] <= 0) {
       throw InputError(
-          fmt::format("{}: axis {} has neither mass nor stiffness, so nothing says how it moves. Give it a mass, a stiffness, or lock it.",
+          fmt::format("{}: axis {} has neither mass nor stiffness, so nothing says how it moves. Give it a mass, a "
+                      "stiffness, or lock it.",
                       point.name, axis));
     }
   }
@@ -214,15 +231,17 @@ int WorldBuilder::addPoint(const DrivenPointModel& point) {
 }
 
 void WorldBuilder::excludePair(int a, int b) {
-  PINCER_DEMAND(isIndex(a, model_.bodies.size()) && isIndex(b, model_.bodies.size()), "excludePair: add both bodies first");
+  PINCER_DEMAND(isIndex(a, model_.bodies.size()) && isIndex(b, model_.bodies.size()),
+                "excludePair: add both bodies first");
   excluded_.emplace_back(std::min(a, b), std::max(a, b));
 }
 
 void WorldBuilder::setPairMaterial(int a, int b, const Material& material) {
-  PINCER_DEMAND(isIndex(a, model_.bodies.size()) && isIndex(b, model_.bodies.size()), "setPairMaterial: add both bodies first");
-  checkMaterial(
-      fmt::format("pair {} and {}", model_.bodies[static_cast<std::size_t>(a)].name, model_.bodies[static_cast<std::size_t>(b)].name),
-      material);
+  PINCER_DEMAND(isIndex(a, model_.bodies.size()) && isIndex(b, model_.bodies.size()),
+                "setPairMaterial: add both bodies first");
+  checkMaterial(fmt::format("pair {} and {}", model_.bodies[static_cast<std::size_t>(a)].name,
+                            model_.bodies[static_cast<std::size_t>(b)].name),
+                material);
   model_.special_pairs.push_back({std::min(a, b), std::max(a, b), material, false});
 }
 

@@ -3,7 +3,8 @@
 
 namespace pincer::engine {
 
-// contactId (contact.h) has so many bits for either number; beyond, contacts would share ids and take each other's memory.
+// contactId (contact.h) has so many bits for either number; beyond, contacts
+// would share ids and take each other's memory.
 constexpr int kNumberBits = 15;
 constexpr int kMostNumbered = 1 << kNumberBits;
 

@@ -10,8 +10,14 @@ namespace {
 
 class PartInputs {
  public:
-  PartInputs(const WorldModel& model, const StepInputs& inputs, double h, double left, WorldState& state, WorldScratch& scratch)
-      : model_(model), inputs_(inputs), left_(left), share_(h < left ? h / left : 1), state_(state), scratch_(scratch) {}
+  PartInputs(const WorldModel& model, const StepInputs& inputs, double h, double left, WorldState& state,
+             WorldScratch& scratch)
+      : model_(model),
+        inputs_(inputs),
+        left_(left),
+        share_(h < left ? h / left : 1),
+        state_(state),
+        scratch_(scratch) {}
 
   std::uint32_t set() {
     for (std::size_t i = 0; i < scratch_.point_inputs.size(); ++i) setPoint(i);
@@ -31,7 +37,8 @@ class PartInputs {
     scratch_.points[i].input_ok = isFinite(end);
     if (!scratch_.points[i].input_ok) status_ |= kInputNotFinite;
     if (share_ < 1)
-      out.p_target_W = cubicBetween(now.p_target_W, now.v_target_W, end.p_target_W, end.v_target_W, left_, share_, out.v_target_W);
+      out.p_target_W =
+          cubicBetween(now.p_target_W, now.v_target_W, end.p_target_W, end.v_target_W, left_, share_, out.v_target_W);
   }
 
   void setControl(std::size_t d) {
@@ -39,7 +46,8 @@ class PartInputs {
     const bool is_given = d < inputs_.controls.size(), is_finite = is_given && isFinite(inputs_.controls[d]);
     if (is_finite) end = withinControls(model_.drives[d], inputs_.controls[d]);
     if (is_given && !is_finite) status_ |= kInputNotFinite;
-    if (state_.h_last == 0) state_.controls[d] = {end.value - left_ * end.rate, end.rate, end.moves};  // it has come from somewhere
+    // it has come from somewhere
+    if (state_.h_last == 0) state_.controls[d] = {end.value - left_ * end.rate, end.rate, end.moves};
     scratch_.drives[d].input = controlAt(state_.controls[d], end, left_, share_);
   }
 

@@ -30,7 +30,8 @@ void place(const BodyModel& body, BodyScratch& out) {
   out.R_WB_mid = out.X_WB_mid.q.toRotationMatrix();
 }
 
-void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, const BodyForce* force, double h, BodyScratch& out) {
+void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, const BodyForce* force, double h,
+                 BodyScratch& out) {
   PINCER_ASSERT(isUnitIfFinite(s.X_WI.q));
   out.start.v_W = s.v_W;
   out.free.v_W = s.v_W + dv_gravity_W;
@@ -58,37 +59,43 @@ void predictDriven(const BodyState& s, const Vec3& w_W, const MotionInput& in, d
   out.X_WB_end = in.X_WB;
   out.start = {s.v_W, w_W};
   out.free = in.motion;
-  // Predicted as that of a dynamic body: what rests on it has its acceleration, and the gap between them must not show it.
+  // Predicted as that of a dynamic body: what rests on it has its acceleration,
+  // and the gap between them must not show it.
   out.X_WI_mid = {quatFromRotationVector(0.5 * h * w_W) * s.X_WI.q, s.X_WI.p + 0.5 * h * s.v_W};
   // A body that slides on it is measured against the way that it goes, not against the mean of two velocities.
   out.end.v_W = 2 / h * (in.X_WB.p - s.X_WI.p) - s.v_W;
   out.end.w_W = 2 / h * rotationVectorOf(in.X_WB.q * s.X_WI.q.conjugate()) - w_W;
 }
 
-// One axis of a driven point: (effective mass) v+ = momentum + contact impulse, with the spring-damper's impulse over the tick inside.
-// The axis at the start: error e = p - target, velocity v, the target's motion over the tick, the force f.
+// One axis of a driven point: (effective mass) v+ = momentum + contact impulse, with the
+// spring-damper's impulse over the tick inside. The axis at the start: error e = p - target, velocity
+// v, the target's motion over the tick, the force f.
 struct AxisInput {
   double m, k, d, e, v, v_target, v_target_end, target_step, f, h;
 };
 
-// Spring impulse -k [h (e + e+)/2 - h^2/6 (e'+ - e')], damper impulse -d (change of e), kinematics p+ = p + h (v + v+)/2. With the 1/6 the
-// scheme is Numerov's (Fox and Goodwin, Proc. Camb. Phil. Soc. 45 (1949) 373-388): the error of frequency is 4th order, not 2nd.
+// Spring impulse -k [h (e + e+)/2 - h^2/6 (e'+ - e')], damper impulse -d (change of e), kinematics p+ = p + h (v +
+// v+)/2. With the 1/6 the scheme is Numerov's (Fox and Goodwin, Proc. Camb. Phil. Soc. 45 (1949) 373-388): the
+// error of frequency is 4th order, not 2nd.
 double fourthOrderMass(const AxisInput& a) { return a.m + a.k * a.h * a.h / 12 + 0.5 * a.d * a.h; }
 double fourthOrderMomentum(const AxisInput& a) {
-  const double spring = a.k * a.h * (a.e + a.h * (5.0 / 12 * a.v + (a.v_target_end - a.v_target) / 6) - 0.5 * a.target_step);
+  const double spring =
+      a.k * a.h * (a.e + a.h * (5.0 / 12 * a.v + (a.v_target_end - a.v_target) / 6) - 0.5 * a.target_step);
   const double damper = a.d * (0.5 * a.h * a.v - a.target_step);
   return a.m * a.v + a.h * a.f - spring - damper;
 }
 
-// Force at the end of the tick: k and d act on the end values, which are implicit in v+. `theta`: share of v+ in the displacement, PointScratch.
+// Force at the end of the tick: k and d act on the end values, which are implicit in v+. `theta`: share
+// of v+ in the displacement, PointScratch.
 double implicitMass(const AxisInput& a, double theta) { return a.m + a.h * a.d + a.h * a.h * a.k * theta; }
 double implicitMomentum(const AxisInput& a, double theta) {
   const double spring = a.h * a.k * (a.e + (1 - theta) * a.h * a.v - a.target_step);
   return a.m * a.v + a.h * (a.f + a.d * a.v_target_end) - spring;
 }
 
-// theta: second order where that leaves no more than a third of what the velocity was off by to the next tick, with the sign turned. Of a tip without
-// mass nor damping all of it is left at one half, for ever, and in a hollow it grows: where there are hollows such a tip is first order (decision 17).
+// theta: second order where that leaves no more than a third of what the velocity was off by to the next tick, with the
+// sign turned. Of a tip without mass nor damping all of it is left at one half, for ever, and in a hollow it grows:
+// where there are hollows such a tip is first order (decision 17).
 //   (m - h^2 k (1 - theta)) / (m + h d + h^2 k theta) >= -1/3
 double shareOfEnd(const AxisInput& a, bool touching, bool has_hollows) {
   const double stiff = a.h * a.h * a.k;
@@ -97,7 +104,8 @@ double shareOfEnd(const AxisInput& a, bool touching, bool has_hollows) {
 }
 
 // How it turns: as the device does, and about the contact normal past that, against a spring without inertia.
-void predictTwist(const DrivenPointModel& point, const PointState& s, const PointInput& in, double h, PointScratch& out) {
+void predictTwist(const DrivenPointModel& point, const PointState& s, const PointInput& in, double h,
+                  PointScratch& out) {
   out.start.w_W = out.free.w_W = out.input_ok ? in.w_W : Vec3::Zero();
   out.inverse_twist = 0;
   if (!(point.twist_stiffness + point.twist_damping > 0)) return;
@@ -135,7 +143,8 @@ struct PointMotion {
 };
 
 // The same from tick to tick, as long as the point touches, or doesn't, in parts of the same length.
-void findMobility(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, bool touching, double h, PointScratch& out) {
+void findMobility(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, bool touching, double h,
+                  PointScratch& out) {
   if (out.mobility_h == h && out.mobility_touching == touching) return;
   out.mobility_h = h;
   out.mobility_touching = touching;
@@ -150,8 +159,8 @@ void findMobility(const DrivenPointModel& point, const std::array<AxisForm, 3>& 
   out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
 }
 
-void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointMotion& m, bool touching, double h,
-                 PointScratch& out) {
+void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointMotion& m,
+                 bool touching, double h, PointScratch& out) {
   findMobility(point, forms, touching, h, out);
   for (int i = 0; i < 3; ++i) {
     const AxisInput a{point.mass,    point.stiffness[i], point.damping[i], m.e[i], m.v[i],
@@ -163,14 +172,19 @@ void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& f
   }
 }
 
-[[gnu::always_inline]] inline void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms, const PointState& s,
-                                                const PointInput& in, double h, PointScratch& out) {
+[[gnu::always_inline]] inline void predictPoint(const DrivenPointModel& point, const std::array<AxisForm, 3>& forms,
+                                                const PointState& s, const PointInput& in, double h,
+                                                PointScratch& out) {
   out.p_target_W = out.input_ok ? in.p_target_W : s.p_target_W;
   out.v_target_W = out.input_ok ? in.v_target_W : Vec3::Zero();
   out.start.v_W = s.v_W;
   out.turned = in.turned && out.input_ok;
-  const PointMotion motion_W{
-      s.p_W - s.p_target_W, s.v_W, s.v_target_W, out.v_target_W, out.p_target_W - s.p_target_W, out.input_ok ? in.f_W : Vec3::Zero()};
+  const PointMotion motion_W{s.p_W - s.p_target_W,
+                             s.v_W,
+                             s.v_target_W,
+                             out.v_target_W,
+                             out.p_target_W - s.p_target_W,
+                             out.input_ok ? in.f_W : Vec3::Zero()};
   if (out.turned) {
     PINCER_ASSERT(isUnit(in.n_W));
     out.R_WA = frameFromNormal(in.n_W);
@@ -180,7 +194,8 @@ void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& f
     predictAxes(point, forms, motion_W, s.touching, h, out);
   }
   for (int i = 0; i < 3; ++i)
-    out.p_mid_W[i] = forms[i] == AxisForm::kLocked ? 0.5 * (s.p_W[i] + out.p_target_W[i]) : s.p_W[i] + 0.5 * h * s.v_W[i];
+    out.p_mid_W[i] =
+        forms[i] == AxisForm::kLocked ? 0.5 * (s.p_W[i] + out.p_target_W[i]) : s.p_W[i] + 0.5 * h * s.v_W[i];
   predictTwist(point, s, in, h, out);
   predictTurn(point, s, h, out);
 }
@@ -212,7 +227,8 @@ void predict(const WorldModel& model, const WorldState& state, WorldScratch& scr
   predictBodies(model, state, scratch);
   if (!model.trees.empty()) predictTrees(model, state, scratch);
   for (std::size_t i = 0; i < model.points.size(); ++i) {
-    predictPoint(model.points[i], model.point_forms[i], state.points[i], scratch.point_inputs[i], scratch.h, scratch.points[i]);
+    predictPoint(model.points[i], model.point_forms[i], state.points[i], scratch.point_inputs[i], scratch.h,
+                 scratch.points[i]);
   }
   if (!model.joint_groups.empty()) predictJoints(model, scratch);
   scratch.contacts.clear();
@@ -239,7 +255,8 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
     out.start.v_W = out.free.v_W = out.end.v_W = state.points[i].v_W;
     out.turned = false;
     out.inverse_twist = out.inverse_turn = 0;
-    for (int axis = 0; axis < 3; ++axis) out.inverse_mass[axis] = model.points[i].locked[axis] || mass <= 0 ? 0 : 1 / mass;
+    for (int axis = 0; axis < 3; ++axis)
+      out.inverse_mass[axis] = model.points[i].locked[axis] || mass <= 0 ? 0 : 1 / mass;
     out.root_inverse_mass = out.inverse_mass.cwiseSqrt();
     out.mobility_h = 0;
   }

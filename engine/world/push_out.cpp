@@ -25,10 +25,14 @@ double deepGap(const WorldModel& model) { return -(kDeepSpeed / kNormalCorrectio
 double thicknessOf(const WorldModel& model, const Side& side) {
   return side.kind == SideKind::kBody ? model.bodies[side.index].inner_radius : std::numeric_limits<double>::infinity();
 }
-double thinner(const WorldModel& model, const Contact& c) { return std::min(thicknessOf(model, c.a), thicknessOf(model, c.b)); }
+double thinner(const WorldModel& model, const Contact& c) {
+  return std::min(thicknessOf(model, c.a), thicknessOf(model, c.b));
+}
 
 // Between walls that close on it nothing is to be gained: it would end as deep in one as in both.
-bool isDeep(const WorldModel& model, const Contact& c, double gap) { return gap < deepGap(model) && !c.yields && isPushedOut(model, c); }
+bool isDeep(const WorldModel& model, const Contact& c, double gap) {
+  return gap < deepGap(model) && !c.yields && isPushedOut(model, c);
+}
 
 // Where the point of a body that touches, at an arm in the middle of this part of the tick, is at its end.
 Vec3 pointAfter(const WorldState& state, const WorldScratch& scratch, const Side& side, const Vec3& arm_W) {
@@ -36,11 +40,13 @@ Vec3 pointAfter(const WorldState& state, const WorldScratch& scratch, const Side
   return end.p + end.q * (mid.q.conjugate() * arm_W);
 }
 
-// Along the normal of the middle, between the two points that touch there: in the predicted middle what lands seems to overlap, and doesn't.
+// Along the normal of the middle, between the two points that touch there: in the predicted middle
+// what lands seems to overlap, and doesn't.
 double gapAfter(const WorldState& state, const WorldScratch& scratch, const Contact& c) {
   if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) return c.phi;
   const Vec3 half_W = 0.5 * c.phi * c.n_W();
-  return c.n_W().dot(pointAfter(state, scratch, c.a, c.arm_a_W + half_W) - pointAfter(state, scratch, c.b, c.arm_b_W - half_W));
+  return c.n_W().dot(pointAfter(state, scratch, c.a, c.arm_a_W + half_W) -
+                     pointAfter(state, scratch, c.b, c.arm_b_W - half_W));
 }
 
 // The contact's normal row on one of its bodies, and that body's mobility.
@@ -50,7 +56,8 @@ struct PushSide {
   Vec3 n_W, turn_W;  // what a unit impulse does to the angular velocity
   Vec3 arm_x_n_W;
 
-  PushSide(const WorldModel& model, WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& normal_W) : n_W(normal_W) {
+  PushSide(const WorldModel& model, WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& normal_W)
+      : n_W(normal_W) {
     if (!isFree(model, side)) return;
     BodyScratch& body = scratch.bodies[side.index];
     push = &body.push;
@@ -97,13 +104,15 @@ bool relax(const WorldModel& model, WorldScratch& scratch, const Contact& c, Pus
   return true;
 }
 
-// Half a sweep, over the contacts of bodies that are deep or were pushed, few in most heaps: those are marked in scratch.pushed.
+// Half a sweep, over the contacts of bodies that are deep or were pushed, few in most
+// heaps: those are marked in scratch.pushed.
 //   standing  those with what stands, or those between two bodies that can be moved
 void sweepPushes(const WorldModel& model, bool standing, WorldScratch& scratch) {
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
     const ContactEnds& ends = scratch.islands.ends[i];
     const auto isMarked = [&](int mover) {
-      return mover >= 0 && mover < static_cast<int>(scratch.pushed.size()) && scratch.pushed[static_cast<std::size_t>(mover)];
+      return mover >= 0 && mover < static_cast<int>(scratch.pushed.size()) &&
+             scratch.pushed[static_cast<std::size_t>(mover)];
     };
     const Contact& c = scratch.contacts[i];
     if ((isMarked(ends.a) || isMarked(ends.b)) && (isFree(model, c.a) != isFree(model, c.b)) == standing) {
@@ -112,8 +121,8 @@ void sweepPushes(const WorldModel& model, bool standing, WorldScratch& scratch) 
   }
 }
 
-// The middle of this part of the tick doesn't show how deep a corner goes that turns so far in it: what lifts the body then is taken from its own motion, or
-// spin would become height.
+// The middle of this part of the tick doesn't show how deep a corner goes that turns so far in it: what lifts the body
+// then is taken from its own motion, or spin would become height.
 void payForLift(const WorldModel& model, const WorldScratch& scratch, std::size_t i, BodyState& body) {
   constexpr double kTurnedIn = 0.1;  // [rad]
   const double lift = -model.bodies[i].mass * scratch.gravity_W.dot(scratch.bodies[i].push.v_W);
@@ -133,7 +142,9 @@ bool isPushedOut(const WorldModel& model, const Contact& c) {
 }
 
 void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
-  const auto staysDeep = [&](const Contact& c) { return isDeep(model, c, c.phi) && isDeep(model, c, gapAfter(state, scratch, c)); };
+  const auto staysDeep = [&](const Contact& c) {
+    return isDeep(model, c, c.phi) && isDeep(model, c, gapAfter(state, scratch, c));
+  };
   if (std::none_of(scratch.contacts.begin(), scratch.contacts.end(), staysDeep)) return;
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     scratch.bodies[i].push = {Vec3::Zero(), Vec3::Zero()};
@@ -156,7 +167,8 @@ void pushOut(const WorldModel& model, WorldState& state, WorldScratch& scratch) 
     const Quat turn = quatFromRotationVector(push.w_W);
     state.bodies[i].X_WI.p += push.v_W;
     state.bodies[i].X_WI.q = (turn * state.bodies[i].X_WI.q).normalized();
-    state.bodies[i].L_W = turn * state.bodies[i].L_W;  // or a needle that spins would gain energy, turned against its spin
+    // or a needle that spins would gain energy, turned against its spin
+    state.bodies[i].L_W = turn * state.bodies[i].L_W;
     payForLift(model, scratch, i, state.bodies[i]);
   }
 }

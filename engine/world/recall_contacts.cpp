@@ -19,7 +19,8 @@ double inverseRoot(double x) {
   return (1 + 0.5 * e) + e * e * (0.375 + e * 0.3125);
 }
 
-// Keeps the first tangent as close as possible to the one remembered, so that the warm start keeps its meaning. R holds the normal already.
+// Keeps the first tangent as close as possible to the one remembered, so that the warm start keeps
+// its meaning. R holds the normal already.
 void carryFrame(const ContactMemory& memory, Mat3& R) {
   const Vec3 n_W = R.col(2);
   Vec3 t1_W = memory.t1_W;
@@ -76,7 +77,8 @@ namespace {
 
 std::uint64_t pairOf(std::uint64_t id) { return id >> 32; }
 
-// Contacts and memories come sorted by id: each finds its own on the way. Returns how many contacts between bodies found none.
+// Contacts and memories come sorted by id: each finds its own on the way. Returns how
+// many contacts between bodies found none.
 int recallByIdentity(std::span<const ContactMemory> memories, WorldScratch& scratch) {
   int missing = 0;
   const ContactMemory *m = memories.data(), *const end = m + memories.size();

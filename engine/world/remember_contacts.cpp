@@ -54,11 +54,14 @@ bool isStuckAlike(int shape_bits, const ContactMemory& x, const ContactMemory& y
   return isOfSameTwo(shape_bits, x.id, y.id) && mayStick(y) && x.n_W.dot(y.n_W) > kSamePlane;
 }
 
-// Makes the offsets of one face's contacts those of one rigid motion in its plane, d + theta n x rho: what no motion can undo would wedge
-// the body against its own friction, and the solver against the round-off of it. Least squares, all points alike.
+// Makes the offsets of one face's contacts those of one rigid motion in its plane, d + theta n x rho:
+// what no motion can undo would wedge the body against its own friction, and the solver against the
+// round-off of it. Least squares, all points alike.
 void alignOffsets(std::span<ContactMemory> face) {
   Vec3 centre = Vec3::Zero(), d = Vec3::Zero();
-  const auto offset_W = [](const ContactMemory& m) { return Vec3(m.t1_W * m.offset_C[0] + m.n_W.cross(m.t1_W) * m.offset_C[1]); };
+  const auto offset_W = [](const ContactMemory& m) {
+    return Vec3(m.t1_W * m.offset_C[0] + m.n_W.cross(m.t1_W) * m.offset_C[1]);
+  };
   const auto count = static_cast<double>(std::count_if(face.begin(), face.end(), sticks));
   if (count == 0) return;
   for (const ContactMemory& m : face) {
@@ -91,7 +94,8 @@ void alignOffsets(std::span<ContactMemory> face) {
   }
 }
 
-// Contacts of two bodies follow each other, sorted by id; a face is a run of them that stick in one plane. Those that sleep stay as they are.
+// Contacts of two bodies follow each other, sorted by id; a face is a run of them that stick in one
+// plane. Those that sleep stay as they are.
 void alignFaces(int shape_bits, std::span<ContactMemory> contacts, std::span<const SleepingContact> sleeping) {
   for (std::size_t first = 0; first < contacts.size();) {
     if (!sleeping.empty() && sleeping.front().place == static_cast<int>(first)) {
@@ -121,8 +125,10 @@ void keepOld(const WorldScratch& scratch, Contact& c, ContactMemory* place, std:
   if (c.memory == place && standsStill(scratch, c)) kept.push_back({&c, place, *place});
 }
 
-// Puts what sleeping contacts of ids below `id` remember where it belongs, from `place` on. Returns the place behind it.
-ContactMemory* putSleeping(std::span<SleepingContact>& sleeping, std::uint64_t id, ContactMemory* first, ContactMemory* place) {
+// Puts what sleeping contacts of ids below `id` remember where it belongs, from
+// `place` on. Returns the place behind it.
+ContactMemory* putSleeping(std::span<SleepingContact>& sleeping, std::uint64_t id, ContactMemory* first,
+                           ContactMemory* place) {
   for (; !sleeping.empty() && sleeping.front().contact.id < id; sleeping = sleeping.subspan(1), ++place) {
     const auto now = static_cast<int>(place - first);
     if (sleeping.front().place != now) *place = sleeping.front().memory;

@@ -15,23 +15,25 @@ bool same(const BodyState& a, const BodyState& b) {
   return a.X_WI.p == b.X_WI.p && same(a.X_WI.q, b.X_WI.q) && a.v_W == b.v_W && a.L_W == b.L_W;
 }
 bool same(const ContactMemory& a, const ContactMemory& b) {
-  return a.id == b.id && a.r == b.r && a.offset_C == b.offset_C && a.t1_W == b.t1_W && a.n_W == b.n_W && a.arm_a_W == b.arm_a_W &&
-         a.arm_b_W == b.arm_b_W && a.active == b.active && a.sliding == b.sliding && a.closing == b.closing && a.anchored == b.anchored &&
-         a.open_ticks == b.open_ticks && a.settling == b.settling;
+  return a.id == b.id && a.r == b.r && a.offset_C == b.offset_C && a.t1_W == b.t1_W && a.n_W == b.n_W &&
+         a.arm_a_W == b.arm_a_W && a.arm_b_W == b.arm_b_W && a.active == b.active && a.sliding == b.sliding &&
+         a.closing == b.closing && a.anchored == b.anchored && a.open_ticks == b.open_ticks && a.settling == b.settling;
 }
 bool same(const MotionInput& a, const MotionInput& b) {
-  return a.X_WB.p == b.X_WB.p && same(a.X_WB.q, b.X_WB.q) && a.motion.v_W == b.motion.v_W && a.motion.w_W == b.motion.w_W;
+  return a.X_WB.p == b.X_WB.p && same(a.X_WB.q, b.X_WB.q) && a.motion.v_W == b.motion.v_W &&
+         a.motion.w_W == b.motion.w_W;
 }
 
 namespace {
 
 bool same(const PointState& a, const PointState& b) {
-  return a.p_W == b.p_W && a.v_W == b.v_W && a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.touching == b.touching &&
-         a.twist == b.twist && a.twist_rate == b.twist_rate && a.turn_W == b.turn_W && a.turn_rate_W == b.turn_rate_W;
+  return a.p_W == b.p_W && a.v_W == b.v_W && a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W &&
+         a.touching == b.touching && a.twist == b.twist && a.twist_rate == b.twist_rate && a.turn_W == b.turn_W &&
+         a.turn_rate_W == b.turn_rate_W;
 }
 bool same(const PointInput& a, const PointInput& b) {
-  return a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.f_W == b.f_W && a.w_W == b.w_W && a.turned == b.turned &&
-         a.n_W == b.n_W;
+  return a.p_target_W == b.p_target_W && a.v_target_W == b.v_target_W && a.f_W == b.f_W && a.w_W == b.w_W &&
+         a.turned == b.turned && a.n_W == b.n_W;
 }
 
 bool same(const BodyForce& a, const BodyForce& b) { return a.f_W == b.f_W && a.tau_W == b.tau_W; }
@@ -47,9 +49,9 @@ std::span<const ContactMemory> contactsOf(const WorldState& state) {
 
 // All but the time.
 bool sameState(const WorldState& a, const WorldState& b) {
-  return a.h_last == b.h_last && a.parts == b.parts && a.tree_q == b.tree_q && a.tree_v == b.tree_v && a.brakes == b.brakes &&
-         a.drives == b.drives && a.controls == b.controls && sameRange(a.bodies, b.bodies) && a.driven_w_W == b.driven_w_W &&
-         sameRange(a.points, b.points) && sameRange(contactsOf(a), contactsOf(b));
+  return a.h_last == b.h_last && a.parts == b.parts && a.tree_q == b.tree_q && a.tree_v == b.tree_v &&
+         a.brakes == b.brakes && a.drives == b.drives && a.controls == b.controls && sameRange(a.bodies, b.bodies) &&
+         a.driven_w_W == b.driven_w_W && sameRange(a.points, b.points) && sameRange(contactsOf(a), contactsOf(b));
 }
 
 void copyState(const WorldState& from, WorldState& to) {
@@ -71,27 +73,32 @@ void copyState(const WorldState& from, WorldState& to) {
 
 // The controls are those of the last tick, and lead nowhere.
 bool sameControls(std::span<const DriveInput> controls, const WorldState& state) {
-  return std::equal(controls.begin(), controls.end(), state.controls.begin(), state.controls.begin() + std::ssize(controls));
+  return std::equal(controls.begin(), controls.end(), state.controls.begin(),
+                    state.controls.begin() + std::ssize(controls));
 }
 
 bool isStill(const WorldState& state) {
   const auto stands = [](const auto& s) { return s.v_W.isZero(0); };
-  return std::all_of(state.bodies.begin(), state.bodies.end(), stands) && std::all_of(state.points.begin(), state.points.end(), stands);
+  return std::all_of(state.bodies.begin(), state.bodies.end(), stands) &&
+         std::all_of(state.points.begin(), state.points.end(), stands);
 }
 
 }  // namespace
 
 bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs) {
   const RestMemory& rest = scratch.sleep.rest;
-  return rest.holds && sameControls(inputs.controls, state) && sameRange(inputs.points, std::span<const PointInput>(rest.points)) &&
-         sameRange(inputs.motions, std::span<const MotionInput>(rest.motions)) && inputs.applied.gravity_W == rest.gravity_W &&
+  return rest.holds && sameControls(inputs.controls, state) &&
+         sameRange(inputs.points, std::span<const PointInput>(rest.points)) &&
+         sameRange(inputs.motions, std::span<const MotionInput>(rest.motions)) &&
+         inputs.applied.gravity_W == rest.gravity_W &&
          sameRange(inputs.applied.forces, std::span<const BodyForce>(rest.forces)) && sameState(state, rest.state);
 }
 
 void noteRest(const WorldState& state, const StepInputs& inputs, bool calm, WorldScratch& scratch) {
   RestMemory& rest = scratch.sleep.rest;
   rest.holds = false;
-  if (!calm || inputs.points.size() != rest.points.size() || inputs.motions.size() != rest.motions.size() || !isStill(state)) {
+  if (!calm || inputs.points.size() != rest.points.size() || inputs.motions.size() != rest.motions.size() ||
+      !isStill(state)) {
     rest.candidate = false;
     return;
   }

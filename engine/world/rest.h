@@ -1,12 +1,14 @@
 // rest: what has come to rest stays there to the bit, and a tick that would repeat the last one isn't computed.
 //
-// At rest is a body or point on which contacts push whose impulses of the last tick still obey the contact law (no iteration was needed), and
-// which is slower than kRestSpeed, now and a tick ago: its velocity becomes 0 and its pose stays (advance.cpp). What that takes away is less than
-// what the solver's tolerance leaves open. It holds whether sleep is on or off.
+// At rest is a body or point on which contacts push whose impulses of the last tick still obey the contact
+// law (no iteration was needed), and which is slower than kRestSpeed, now and a tick ago: its velocity
+// becomes 0 and its pose stays (advance.cpp). What that takes away is less than what the solver's tolerance
+// leaves open. It holds whether sleep is on or off.
 //
-// Sleep is exact, no heuristic: a tick is a function of state and inputs. Where it ended in the state that it started from, bit by bit, the next one
-// from the same state with the same inputs does so too. Any change of either (a finger, a target, a force, a driven body, a state set from outside)
-// is a difference, and the tick is computed. Costs a comparison of the
+// Sleep is exact, no heuristic: a tick is a function of state and inputs. Where it ended in the state that
+// it started from, bit by bit, the next one from the same state with the same inputs does so too. Any change
+// of either (a finger, a target, a force, a driven body, a state set from outside) is a difference, and the
+// tick is computed. Costs a comparison of the
 // state. Of a world that isn't at rest as a whole, islands sleep (island_sleep.h).
 #pragma once
 #include "pincer/engine/world/stages.h"

@@ -12,12 +12,15 @@ namespace {
 
 // A finger or body on a mesh needs some dozens of patches; a world without meshes none.
 int patchesFor(const WorldModel& model) {
-  const auto is_mesh = [](const ColliderModel& collider) { return std::holds_alternative<contact::Mesh>(collider.shape); };
+  const auto is_mesh = [](const ColliderModel& collider) {
+    return std::holds_alternative<contact::Mesh>(collider.shape);
+  };
   return std::any_of(model.colliders.begin(), model.colliders.end(), is_mesh) ? 1024 : 1;
 }
 
 bool mayIslandsSleep(const WorldModel& model) {
-  return model.options.sleep && std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodyModel& body) { return body.dynamic; });
+  return model.options.sleep &&
+         std::any_of(model.bodies.begin(), model.bodies.end(), [](const BodyModel& body) { return body.dynamic; });
 }
 
 // So that copying a state into it allocates nothing.
@@ -56,8 +59,10 @@ WorldSleep::WorldSleep(const WorldModel& model)
   if (mayIslandsSleep(model)) contacts.reserve(room);
 }
 
-WorldScratch::WorldScratch(const WorldModel& model) : h(model.options.h), patches(patchesFor(model)), islands(model), sleep(model) {
-  PINCER_DEMAND(fitTheTick(model), "WorldScratch: options.h isn't the tick that the model was built for; build it again (WorldBuilder)");
+WorldScratch::WorldScratch(const WorldModel& model)
+    : h(model.options.h), patches(patchesFor(model)), islands(model), sleep(model) {
+  PINCER_DEMAND(fitTheTick(model),
+                "WorldScratch: options.h isn't the tick that the model was built for; build it again (WorldBuilder)");
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);
   const std::size_t row_count = contact_count * kMaxContactRows;
   bodies.resize(model.bodies.size());
@@ -130,15 +135,19 @@ ContactReport contactAt(const WorldScratch& scratch, int k) {
 }
 
 std::uint64_t contactId(int shape_bits, const Side& a, const Side& b, std::uint32_t feature) {
-  PINCER_ASSERT(isIndex(b.index, std::size_t{kMostNumbered} >> shape_bits) && isIndex(b.shape, std::size_t{1} << shape_bits));
+  PINCER_ASSERT(isIndex(b.index, std::size_t{kMostNumbered} >> shape_bits) &&
+                isIndex(b.shape, std::size_t{1} << shape_bits));
   const auto on_b = static_cast<std::uint64_t>(b.index) << shape_bits;
   if (a.kind == SideKind::kPoint) {
     PINCER_ASSERT(isIndex(a.index, kMostNumbered));
-    return std::uint64_t{1} << 62 | static_cast<std::uint64_t>(a.index) << (32 + kNumberBits) | (on_b | b.shape) << 32 | feature;
+    return std::uint64_t{1} << 62 | static_cast<std::uint64_t>(a.index) << (32 + kNumberBits) | (on_b | b.shape) << 32 |
+           feature;
   }
-  PINCER_ASSERT(isIndex(a.index, std::size_t{kMostNumbered} >> shape_bits) && isIndex(a.shape, std::size_t{1} << shape_bits));
+  PINCER_ASSERT(isIndex(a.index, std::size_t{kMostNumbered} >> shape_bits) &&
+                isIndex(a.shape, std::size_t{1} << shape_bits));
   const std::uint64_t shapes = static_cast<std::uint64_t>(a.shape) << shape_bits | b.shape;
-  return static_cast<std::uint64_t>(a.index) << (32 + kNumberBits + shape_bits) | (on_b << shape_bits | shapes) << 32 | feature;
+  return static_cast<std::uint64_t>(a.index) << (32 + kNumberBits + shape_bits) | (on_b << shape_bits | shapes) << 32 |
+         feature;
 }
 
 Contact* addContact(WorldScratch& scratch, double phi) {
@@ -149,8 +158,8 @@ Contact* addContact(WorldScratch& scratch, double phi) {
     return &contacts.back();
   }
   scratch.contacts_dropped = true;
-  const auto shallowest =
-      std::max_element(contacts.begin(), contacts.end(), [](const Contact& x, const Contact& y) { return x.phi < y.phi; });
+  const auto shallowest = std::max_element(contacts.begin(), contacts.end(),
+                                           [](const Contact& x, const Contact& y) { return x.phi < y.phi; });
   if (!(shallowest->phi > phi)) return nullptr;
   *shallowest = {};
   shallowest->phi = phi;

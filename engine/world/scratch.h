@@ -1,5 +1,6 @@
-// scratch: working memory of a step, sized once from the model. What the next tick needs of this one is in the state. Only WorldSleep outlives a tick,
-// and the results of the last one: contacts, `h` and `solve` stay to be read (engine/step.h), and are those of a tick that repeats it.
+// scratch: working memory of a step, sized once from the model. What the next tick needs of this one is in the state.
+// Only WorldSleep outlives a tick, and the results of the last one: contacts, `h` and `solve` stay to be read
+// (engine/step.h), and are those of a tick that repeats it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -21,43 +22,47 @@ namespace pincer::engine {
 
 // Motion of a body or point in this part of the tick.
 struct MoverScratch {
-  Motion start, free, end;        // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
+  // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
+  Motion start, free, end;
   Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]; of what doesn't move, of those of awake bodies
   bool touched = false;           // some contact pushes on it
-  double rest_speed = 0;          // and the last tick's impulses still fit for all that do: slower than this it is at rest (rest.h) [m/s]
-  bool closing = false;           // and one of those closes in this tick
-  bool still = false;             // of bodies: nothing of its state changed in this tick
+  // and the last tick's impulses still fit for all that do: slower than this it is at rest (rest.h) [m/s]
+  double rest_speed = 0;
+  bool closing = false;  // and one of those closes in this tick
+  bool still = false;    // of bodies: nothing of its state changed in this tick
 };
 struct BodyScratch : MoverScratch {
   Pose X_WI_mid, X_WB_mid;
-  Pose X_WB_end;                               // of driven bodies
-  Mat3 R_WB_mid = Mat3::Identity();            // X_WB_mid.q: a matrix turns many vectors in half the time
-  Mat3 inverse_inertia_W = Mat3::Zero();       // at the middle; of bodies in joints, and in impacts
-  Vec3 angular_impulse_W = Vec3::Zero();       // about the centre of mass [N m s]
-  double flung = 0;                            // how far contacts turn a corner of it in this part of the tick, if that is far [m]
-  Motion push;                                 // out of overlap, in this part of the tick, see push_out.h: a way [m] and a turn [rad]
-  Vec3 free_angular_impulse_W = Vec3::Zero();  // the part of it without contact, of joints and torques applied; `free` has what it does
+  Pose X_WB_end;                          // of driven bodies
+  Mat3 R_WB_mid = Mat3::Identity();       // X_WB_mid.q: a matrix turns many vectors in half the time
+  Mat3 inverse_inertia_W = Mat3::Zero();  // at the middle; of bodies in joints, and in impacts
+  Vec3 angular_impulse_W = Vec3::Zero();  // about the centre of mass [N m s]
+  double flung = 0;  // how far contacts turn a corner of it in this part of the tick, if that is far [m]
+  Motion push;       // out of overlap, in this part of the tick, see push_out.h: a way [m] and a turn [rad]
+  // the part of it without contact, of joints and torques applied; `free` has what it does
+  Vec3 free_angular_impulse_W = Vec3::Zero();
 };
 struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
   Vec3 inverse_mass = Vec3::Zero();  // effective, per axis of A, of the implicit spring-damper [1/kg]
   Vec3 root_inverse_mass = Vec3::Zero();
   Vec3 share_of_end = Vec3::Ones();  // theta, per axis of A: p+ = p + h ((1 - theta) v + theta v+)
-  double mobility_h = 0;             // the length of a part of a tick that these hold for [s], 0: none; and whether the point touched
+  // the length of a part of a tick that these hold for [s], 0: none; and whether the point touched
+  double mobility_h = 0;
   bool mobility_touching = false;
   bool has_hollows = false;  // the model's
   bool turned = false;       // A isn't W
   Mat3 R_WA = Mat3::Identity();
-  double inverse_twist = 0;                                   // effective inverse inertia about A's third axis [1/(kg m^2)]
-  double twist_share_of_end = 1;                              // likewise
-  double twist_rate = 0;                                      // about it, past what the device turns, if nothing touched [rad/s]
-  double inverse_turn = 0;                                    // effective inverse inertia of its turning spring [1/(kg m^2)]
-  double turn_share_of_end = 1;                               // likewise
-  Vec3 told_w_W = Vec3::Zero();                               // that of its device [rad/s]
-  Vec3 turn_rate_W = Vec3::Zero();                            // past that, if nothing touched [rad/s]
-  Vec3 turn_impulse_W = Vec3::Zero();                         // of all contacts about it [N m s]
-  double turning_stiffness = 0;                               // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
-  double twist_impulse = 0;                                   // of all contacts about their normals [N m s]
+  double inverse_twist = 0;            // effective inverse inertia about A's third axis [1/(kg m^2)]
+  double twist_share_of_end = 1;       // likewise
+  double twist_rate = 0;               // about it, past what the device turns, if nothing touched [rad/s]
+  double inverse_turn = 0;             // effective inverse inertia of its turning spring [1/(kg m^2)]
+  double turn_share_of_end = 1;        // likewise
+  Vec3 told_w_W = Vec3::Zero();        // that of its device [rad/s]
+  Vec3 turn_rate_W = Vec3::Zero();     // past that, if nothing touched [rad/s]
+  Vec3 turn_impulse_W = Vec3::Zero();  // of all contacts about it [N m s]
+  double turning_stiffness = 0;        // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
+  double twist_impulse = 0;            // of all contacts about their normals [N m s]
   Vec3 p_target_W = Vec3::Zero(), v_target_W = Vec3::Zero();  // at the end of the tick
   Vec3 v_tick_W = Vec3::Zero();                               // velocity at the start of the tick
   Vec3 tick_impulse_W = Vec3::Zero();                         // of all contacts over all parts of the tick [N s]
@@ -79,7 +84,8 @@ struct JointRow {
   double softness, bias;  // R and b
   double miss;            // how far the constraint is violated [m, rad]
 };
-// A held body's coordinate in this part of the tick (held_body.h): its rate at the start and, without contact, at the end [rad/s, m/s].
+// A held body's coordinate in this part of the tick (held_body.h): its rate at the start and,
+// without contact, at the end [rad/s, m/s].
 struct HeldScratch {
   Vec3 p_WJ, axis_W;                     // of the joint
   double start_rate = 0, free_rate = 0;  // at the start; at the end, were there no contact
@@ -99,8 +105,8 @@ struct JointGroupScratch {
   HeldScratch held;            // of a group that is a held body, instead of rows, A, lambda
 };
 
-// A stop of a coordinate, its dry friction, or a drive at its limit: a contact, where it is needed, see joint_rows.h. As a mover its velocities are those of
-// the coordinate: along z of a stop, out of it; along x of a brake.
+// A stop of a coordinate, its dry friction, or a drive at its limit: a contact, where it is needed, see joint_rows.h.
+// As a mover its velocities are those of the coordinate: along z of a stop, out of it; along x of a brake.
 enum class JointRowKind : unsigned char { kLower, kUpper, kFriction, kDrive };
 struct JointRowScratch : MoverScratch {
   JointRowKind kind = JointRowKind::kLower;
@@ -162,30 +168,32 @@ struct WorldScratch {
   int solves = 0;                           // in this tick
   double h;                                 // length of this part of the tick [s]; 0 in an impact, which takes no time
   Vec3 gravity_W;                           // of this tick [m/s^2]
-  std::span<const BodyForce> forces;        // of this tick, one per body, or none; the caller's: not to be read after it
+  std::span<const BodyForce> forces;  // of this tick, one per body, or none; the caller's: not to be read after it
   std::vector<BodyScratch> bodies;
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // of what is awake, see forEachContact; capacity options.max_contacts
   int far_contacts = 0;           // of them, see far_contacts.h
   bool contacts_dropped = false;
-  std::vector<ImpactPair> fast_pairs;    // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
+  // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
+  std::vector<ImpactPair> fast_pairs;
   std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts
   std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
   std::vector<JointGroupScratch> joint_groups;
   std::vector<TreeScratch> trees;
-  std::vector<JointRowScratch> joint_rows;                       // three per coordinate of all trees, one per drive, and what doesn't move
-  std::vector<DriveScratch> drives;                              // of the world
-  int joint_contacts = 0;                                        // of `contacts`, the last ones
-  JointRowScratch::Hit stops_hit = JointRowScratch::Hit::kNone;  // what may cut this part of the tick: nothing, bounces, landings as well
-  bool flings = false;                                           // some body's `flung` isn't 0
-  std::vector<bool> struck;                                      // per body: an impact reaches it
-  std::vector<bool> pushed;                                      // per body: it is deep in another, or was pushed out of one (push_out.h)
-  std::vector<PushedContact> pushed_contacts;                    // as `contacts`
-  std::vector<KeptMemory> kept;                                  // of contacts that stand still
-  std::vector<TriedImpulse> tried;                               // by id; capacity as contacts
-  int still_bodies = 0;                                          // awake ones that could sleep: nothing of their state changed in this tick
-  WorldState before, coarse;                                     // the tick's start, and its end in half as many parts
-  double bounce = 1;                       // share of the restitution that acts in an impact: less where all of it would add energy
+  std::vector<JointRowScratch> joint_rows;  // three per coordinate of all trees, one per drive, and what doesn't move
+  std::vector<DriveScratch> drives;         // of the world
+  int joint_contacts = 0;                   // of `contacts`, the last ones
+  // what may cut this part of the tick: nothing, bounces, landings as well
+  JointRowScratch::Hit stops_hit = JointRowScratch::Hit::kNone;
+  bool flings = false;                         // some body's `flung` isn't 0
+  std::vector<bool> struck;                    // per body: an impact reaches it
+  std::vector<bool> pushed;                    // per body: it is deep in another, or was pushed out of one (push_out.h)
+  std::vector<PushedContact> pushed_contacts;  // as `contacts`
+  std::vector<KeptMemory> kept;                // of contacts that stand still
+  std::vector<TriedImpulse> tried;             // by id; capacity as contacts
+  int still_bodies = 0;       // awake ones that could sleep: nothing of their state changed in this tick
+  WorldState before, coarse;  // the tick's start, and its end in half as many parts
+  double bounce = 1;          // share of the restitution that acts in an impact: less where all of it would add energy
   std::vector<PointInput> point_inputs;    // at the end of this part of the tick
   std::vector<MotionInput> motion_inputs;  // likewise, one per driven body
   std::vector<int> first_row;
@@ -220,8 +228,8 @@ inline void mark(WorldScratch& scratch, Stage stage) {
   if (scratch.clock) scratch.clock->mark(stage);
 }
 
-// The place of a further contact with gap `phi`, for the caller to fill in: a contact is too large to copy. When all are taken,
-// `contacts_dropped` is set and the shallowest makes room; null if that is the new one.
+// The place of a further contact with gap `phi`, for the caller to fill in: a contact is too large to copy. When all
+// are taken, `contacts_dropped` is set and the shallowest makes room; null if that is the new one.
 Contact* addContact(WorldScratch& scratch, double phi);
 
 }  // namespace pincer::engine

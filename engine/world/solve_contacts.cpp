@@ -8,17 +8,19 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kSlidingSpeed = 1e-9;  // slower than this is rest: well above the solver's residual, far below anything felt [m/s]
-constexpr double kOnCone = 1 - 1e-9;    // of mu r_n, from which friction counts as exhausted
-constexpr double kResidue = 1e-9;       // of the velocity with which a contact opens, ten times the solver's tolerance
+// slower than this is rest: well above the solver's residual, far below anything felt [m/s]
+constexpr double kSlidingSpeed = 1e-9;
+constexpr double kOnCone = 1 - 1e-9;  // of mu r_n, from which friction counts as exhausted
+constexpr double kResidue = 1e-9;     // of the velocity with which a contact opens, ten times the solver's tolerance
 
 double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
   if (side.kind == SideKind::kJoint) return scratch.joint_rows[side.index].mobility;
-  return side.kind == SideKind::kBody ? model.bodies[side.index].inverse_mass : scratch.points[side.index].inverse_mass.sum() * (1.0 / 3);
+  return side.kind == SideKind::kBody ? model.bodies[side.index].inverse_mass
+                                      : scratch.points[side.index].inverse_mass.sum() * (1.0 / 3);
 }
 
-// True if a contact that opens still has an impulse, below the solver's tolerance: what is in the air would stick with it, and remember how far it
-// flies as slip that is to be undone.
+// True if a contact that opens still has an impulse, below the solver's tolerance: what is in the air would stick with
+// it, and remember how far it flies as slip that is to be undone.
 bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
   const double w = inverseMassOf(model, scratch, c.a) + inverseMassOf(model, scratch, c.b);
   return w * c.r[kNormalRow] < kResidue * c.u_C[kNormalRow];
@@ -42,7 +44,8 @@ void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, C
   if (isResidue(model, scratch, c)) c.r.setZero();
   c.impulse_W = c.R_WC * c.r.head<3>();
   const double on_cone = kOnCone * c.mu * c.r[2];
-  c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone && tangentNorm2(u, count) > kSlidingSpeed * kSlidingSpeed;
+  c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone &&
+              tangentNorm2(u, count) > kSlidingSpeed * kSlidingSpeed;
 }
 
 }  // namespace
@@ -61,7 +64,8 @@ void solveContacts(const WorldModel& model, WorldScratch& scratch) {
   if (scratch.contacts.empty()) return;
   ++scratch.solves;
   solveIslands(model, scratch);
-  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) readSolution(model, scratch, static_cast<int>(i), scratch.contacts[i]);
+  for (std::size_t i = 0; i < scratch.contacts.size(); ++i)
+    readSolution(model, scratch, static_cast<int>(i), scratch.contacts[i]);
 }
 
 }  // namespace pincer::engine

@@ -15,8 +15,9 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kLost = 1e-2;         // residual that is no answer
-constexpr double kHeapLost = 0.3;      // of more than kFewContacts, whose impulses may have been scaled down to add no energy
+constexpr double kLost = 1e-2;  // residual that is no answer
+// of more than kFewContacts, whose impulses may have been scaled down to add no energy
+constexpr double kHeapLost = 0.3;
 constexpr int kStoppingSweeps = 30;    // instead
 constexpr double kLargestGive = 1e-4;  // by which contacts around loops of bodies may contradict each other [m/s]
 
@@ -35,7 +36,8 @@ class IslandSolve {
   void run() {
     const bool is_limited = scratch_.operations_left < kNoLimit;
     const std::int64_t share =
-        is_limited ? std::max<std::int64_t>(scratch_.operations_left, 0) * island_.rows / scratch_.islands.rows : kNoLimit;
+        is_limited ? std::max<std::int64_t>(scratch_.operations_left, 0) * island_.rows / scratch_.islands.rows
+                   : kNoLimit;
     const std::int64_t reserve = is_limited ? reserveForStops() : 0;
     memory_.operations_left = share - reserve;
     memory_.haste = hasteAfter(scratch_.solves);
@@ -54,7 +56,8 @@ class IslandSolve {
       solveAgain(options_);
     }
     island_.hit_operations = kHitOperations * island_.contacts - memory_.hit_operations;
-    if (island_.result.give > 0) giveWay(scratch_.h, offsetRate(), problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
+    if (island_.result.give > 0)
+      giveWay(scratch_.h, offsetRate(), problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
     std::int64_t spent = share - reserve - memory_.operations_left;
     if (isLost()) spent += stopOnly(reserve + std::max<std::int64_t>(memory_.operations_left, 0));
     island_.operations = is_limited ? spent : 0;
@@ -69,13 +72,15 @@ class IslandSolve {
   static ContactProblem problemOf(Island& island, IslandScratch& s) {
     const auto n = static_cast<std::size_t>(island.contacts);
     const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.place)].data(), 2 * n);
-    ContactProblem problem{{island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
-                           island.settling > 0,       island.calm};
+    ContactProblem problem{
+        {island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
+        island.settling > 0,       island.calm};
     if (island.has_many_sides) takeManySides(island, s, problem);
     return problem;
   }
 
-  // The gaps of a loop of bodies are fitted to the contacts that pushed in the last tick, once more to the impulses found if that fails; then contacts give way.
+  // The gaps of a loop of bodies are fitted to the contacts that pushed in the last tick, once more to the impulses
+  // found if that fails; then contacts give way.
   void solveLoop() {
     fit(PushingBy::kLastTick);
     SolverOptions giving = options_;
@@ -91,8 +96,8 @@ class IslandSolve {
     if (is_small && !island_.result.converged) solveAgain(giving);
   }
 
-  // A body jammed between supports, whose friction holds it whatever pushes it out of them, may have no answer: then what contacts ask for is
-  // fitted to the impulses found, and they give way.
+  // A body jammed between supports, whose friction holds it whatever pushes it out of them, may have no answer: then
+  // what contacts ask for is fitted to the impulses found, and they give way.
   void solveOne() {
     solve(options_);
     if (island_.result.converged || island_.result.yields || !(scratch_.h > 0) || memory_.operations_left < 0) return;
@@ -104,7 +109,9 @@ class IslandSolve {
 
   // One contact that only stops what closes has an answer: it sticks, if nothing else. Several may contradict each
   // other all the same, and overlap until something pushes them apart.
-  bool pushesInVain() const { return island_.contacts == 1 && scratch_.h > 0 && !island_.result.converged && memory_.operations_left >= 0; }
+  bool pushesInVain() const {
+    return island_.contacts == 1 && scratch_.h > 0 && !island_.result.converged && memory_.operations_left >= 0;
+  }
 
   // A link that grazes another one over an edge is held there by friction whatever pushes it off.
   void solveWithoutPushes() {
@@ -114,10 +121,13 @@ class IslandSolve {
   }
 
   void fit(PushingBy pushing) {
-    fitIslandBiases(pushing, scratch_.h, offsetRate(), problem_, island_.r, island_.q, order_, scratch_.contacts, memory_);
+    fitIslandBiases(pushing, scratch_.h, offsetRate(), problem_, island_.r, island_.q, order_, scratch_.contacts,
+                    memory_);
   }
 
-  void solve(const SolverOptions& options) { solveContacts(problem_, options, memory_, island_.r, island_.u, island_.result); }
+  void solve(const SolverOptions& options) {
+    solveContacts(problem_, options, memory_, island_.r, island_.u, island_.result);
+  }
 
   void solveAgain(const SolverOptions& options) {
     const SolveResult first = island_.result;
@@ -126,13 +136,14 @@ class IslandSolve {
     island_.result.start = first.start;
   }
 
-  // Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then they only stop what closes:
-  // biases that push are left out, and sweeps begin with no impulse at all. Support is better than falling through the floor. Returns what it
-  // took of the operations.
+  // Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then
+  // they only stop what closes: biases that push are left out, and sweeps begin with no impulse at all. Support is
+  // better than falling through the floor. Returns what it took of the operations.
   std::int64_t stopOnly(std::int64_t operations) {
     memory_.operations_left = operations;
     dropPushes();
-    stopBySweeps(problem_, kStoppingSweeps, memory_, VectorMap(island_.r, island_.rows), VectorMap(island_.u, island_.rows));
+    stopBySweeps(problem_, kStoppingSweeps, memory_, VectorMap(island_.r, island_.rows),
+                 VectorMap(island_.u, island_.rows));
     return operations - memory_.operations_left;
   }
 
@@ -169,6 +180,8 @@ class IslandSolve {
 
 }  // namespace
 
-void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) { IslandSolve(model, k, thread, scratch).run(); }
+void solveIsland(const WorldModel& model, int k, int thread, WorldScratch& scratch) {
+  IslandSolve(model, k, thread, scratch).run();
+}
 
 }  // namespace pincer::engine

@@ -12,7 +12,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kLargestJointGap = 1e-6;  // [m, rad]: more than the round-off of a scene file isn't what its author meant
+// [m, rad]: more than the round-off of a scene file isn't what its author meant
+constexpr double kLargestJointGap = 1e-6;
 
 class Fnv1a {
  public:
@@ -40,9 +41,9 @@ void add(Fnv1a& hash, const ContactMemory& c) {
     for (const double x : *v) hash.add(x);
   }
   for (const Vec3& v : {c.t1_W, c.n_W, c.arm_a_W, c.arm_b_W}) hash.add(v);
-  hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1 | static_cast<std::uint64_t>(c.closing) << 2 |
-           static_cast<std::uint64_t>(c.anchored) << 3 | static_cast<std::uint64_t>(c.open_ticks) << 4 |
-           static_cast<std::uint64_t>(c.settling) << 8);
+  hash.add(static_cast<std::uint64_t>(c.active) | static_cast<std::uint64_t>(c.sliding) << 1 |
+           static_cast<std::uint64_t>(c.closing) << 2 | static_cast<std::uint64_t>(c.anchored) << 3 |
+           static_cast<std::uint64_t>(c.open_ticks) << 4 | static_cast<std::uint64_t>(c.settling) << 8);
 }
 
 bool isFinite(const BodyStart& s) {
@@ -53,8 +54,8 @@ bool isFinite(const BodyStart& s) {
 
 WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& starts, const std::vector<Vec3>& points) {
   if (starts.size() != model.bodies.size() || points.size() != model.points.size()) {
-    throw InputError(fmt::format("{} body starts and {} points given for a world of {} bodies and {} points.", starts.size(), points.size(),
-                                 model.bodies.size(), model.points.size()));
+    throw InputError(fmt::format("{} body starts and {} points given for a world of {} bodies and {} points.",
+                                 starts.size(), points.size(), model.bodies.size(), model.points.size()));
   }
   WorldState state;
   for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -78,10 +79,10 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
   for (const JointModel& joint : model.joints) {
     const Vec2 gap = jointGap(state, joint);
     if (!(gap.maxCoeff() > kLargestJointGap)) continue;
-    throw InputError(
-        fmt::format("the joint of body \"{}\": at the start its two sides are {:g} m and {:g} rad apart, more than {:g}. Start the "
-                    "bodies where the joint holds them.",
-                    model.bodies[joint.a].name, gap[0], gap[1], kLargestJointGap));
+    throw InputError(fmt::format(
+        "the joint of body \"{}\": at the start its two sides are {:g} m and {:g} rad apart, more than {:g}. Start the "
+        "bodies where the joint holds them.",
+        model.bodies[joint.a].name, gap[0], gap[1], kLargestJointGap));
   }
   readTrees(model, state);
   state.contacts.resize(static_cast<std::size_t>(model.options.max_contacts));
@@ -90,9 +91,9 @@ WorldState makeState(const WorldModel& model, const std::vector<BodyStart>& star
 
 void growContacts(int contacts, WorldModel& model, WorldState& state) {
   if (contacts < model.options.max_contacts || contacts > kMostContacts) {
-    throw InputError(
-        fmt::format("growContacts: {} contacts; there is room for {}, and {} at most can be had. Ask for a number between them.", contacts,
-                    model.options.max_contacts, kMostContacts));
+    throw InputError(fmt::format(
+        "growContacts: {} contacts; there is room for {}, and {} at most can be had. Ask for a number between them.",
+        contacts, model.options.max_contacts, kMostContacts));
   }
   model.options.max_contacts = contacts;
   state.contacts.resize(static_cast<std::size_t>(contacts));
@@ -115,13 +116,16 @@ double kineticEnergy(const WorldModel& model, const WorldState& state) {
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (!model.bodies[i].dynamic) continue;
     const BodyState& s = state.bodies[i];
-    energy += 0.5 * (model.bodies[i].mass * s.v_W.squaredNorm() + s.L_W.dot(bodyAngularVelocity(model, state, static_cast<int>(i))));
+    energy += 0.5 * (model.bodies[i].mass * s.v_W.squaredNorm() +
+                     s.L_W.dot(bodyAngularVelocity(model, state, static_cast<int>(i))));
   }
   if (!model.trees.empty()) energy += armatureEnergy(model, state);
   return energy;
 }
 
-double potentialEnergy(const WorldModel& model, const WorldState& state) { return potentialEnergy(model, state, model.options.gravity_W); }
+double potentialEnergy(const WorldModel& model, const WorldState& state) {
+  return potentialEnergy(model, state, model.options.gravity_W);
+}
 
 double potentialEnergy(const WorldModel& model, const WorldState& state, const Vec3& gravity_W) {
   PINCER_DEMAND(state.bodies.size() == model.bodies.size(), "the state is one of this model");

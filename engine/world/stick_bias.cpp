@@ -95,7 +95,8 @@ void alignPair(std::span<Contact> pair, int first, double h, double offset_rate,
   }
 }
 
-// Rows of a point that ask for something: all of a contact that stuck; the normal of one that slid, or landed in an overlap.
+// Rows of a point that ask for something: all of a contact that stuck; the normal
+// of one that slid, or landed in an overlap.
 bool asks(const Contact& c, int k) {
   if (k != kNormalRow) return c.stuck;
   return c.bias_C[kNormalRow] < 0 || (c.memory && c.memory->active && !c.closing);

@@ -11,14 +11,15 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kOnePlane = 0.9999;       // cosine of the angle between normals; 0.8 degrees
-constexpr double kLevel = 0.0141;          // its tangent: by which points of one plane may be out of level, over their distance
+constexpr double kOnePlane = 0.9999;  // cosine of the angle between normals; 0.8 degrees
+constexpr double kLevel = 0.0141;  // its tangent: by which points of one plane may be out of level, over their distance
 constexpr double kLevelRoundOff = 1e-6;    // [m]: what overlaps by less is level
 constexpr std::size_t kMostThinned = 256;  // of more points nothing is thinned
 
 bool isSameMaterial(const Material& x, const Material& y) {
-  return x.mu_s == y.mu_s && x.mu_d == y.mu_d && x.restitution == y.restitution && x.torsion_radius == y.torsion_radius &&
-         x.rolling_radius == y.rolling_radius && x.stribeck_speed == y.stribeck_speed;
+  return x.mu_s == y.mu_s && x.mu_d == y.mu_d && x.restitution == y.restitution &&
+         x.torsion_radius == y.torsion_radius && x.rolling_radius == y.rolling_radius &&
+         x.stribeck_speed == y.stribeck_speed;
 }
 
 bool isInOnePlane(const Contact& x, const Contact& y) {
@@ -78,7 +79,8 @@ void thinPlane(std::span<const Contact> contacts, std::size_t leader, std::span<
     if (fates[i] == Fate::kOpen && isInOnePlane(contacts[leader], contacts[i])) plane.add(i, contacts[i]);
   }
   const bool few = plane.count() <= contact::kMaxChosen;
-  for (std::size_t i = 0; i < plane.count(); ++i) fates[plane.indexOf(static_cast<int>(i))] = few ? Fate::kKept : Fate::kDropped;
+  for (std::size_t i = 0; i < plane.count(); ++i)
+    fates[plane.indexOf(static_cast<int>(i))] = few ? Fate::kKept : Fate::kDropped;
   if (few) return;
   plane.beginOutside();
   const contact::ExtremePoints points{plane.points(), {}, 0};
@@ -90,7 +92,8 @@ void thinPlane(std::span<const Contact> contacts, std::size_t leader, std::span<
 
 void thinContacts(std::size_t first, WorldScratch& scratch) {
   std::vector<Contact>& all = scratch.contacts;
-  if (scratch.contacts_dropped || all.size() <= first + contact::kMaxChosen || all.size() > first + kMostThinned) return;
+  if (scratch.contacts_dropped || all.size() <= first + contact::kMaxChosen || all.size() > first + kMostThinned)
+    return;
   const std::span<const Contact> contacts(all.data() + first, all.size() - first);
   std::array<Fate, kMostThinned> fates{};
   for (std::size_t i = 0; i < contacts.size(); ++i) {

@@ -22,22 +22,25 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kFarTurn = 0.5;                                            // of what touches, in one part of a tick [rad]
-constexpr int kMostRevisions = 4;                                           // of which joint rows are needed, in an attempt
-constexpr int kMostTurningParts = 64;                                       // that a tick is cut into for that
+constexpr double kFarTurn = 0.5;       // of what touches, in one part of a tick [rad]
+constexpr int kMostRevisions = 4;      // of which joint rows are needed, in an attempt
+constexpr int kMostTurningParts = 64;  // that a tick is cut into for that
 constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000;  // multiplications besides the solver's
-constexpr double kShortestPart = 1e-9;                                      // of a tick: a hit sooner than that is a hit at once
-// Hits run through a heap by the hundred, sooner than a tick can follow: where so many touch, what hits after the first few lands.
+constexpr double kShortestPart = 1e-9;  // of a tick: a hit sooner than that is a hit at once
+// Hits run through a heap by the hundred, sooner than a tick can follow: where so many
+// touch, what hits after the first few lands.
 constexpr std::size_t kHeap = 100;  // contacts
 constexpr int kMostHeapImpacts = 5;
 
 class Tick {
  public:
-  Tick(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs, ContactSource* source)
+  Tick(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs,
+       ContactSource* source)
       : model_(model), state_(state), scratch_(scratch), inputs_(inputs), source_(source), left_(model.options.h) {}
 
   StepReport run() {
-    if (model_.options.sleep && repeatsItself(state_, scratch_, inputs_) && (!source_ || source_->repeatsItself())) return sleep();
+    if (model_.options.sleep && repeatsItself(state_, scratch_, inputs_) && (!source_ || source_->repeatsItself()))
+      return sleep();
     applyForces();
     scratch_.contacts_dropped = false;
     scratch_.solves = 0;
@@ -66,8 +69,8 @@ class Tick {
   void applyForces() {
     const AppliedForces& applied = inputs_.applied;
     const auto is_finite = [](const BodyForce& force) { return force.f_W.allFinite() && force.tau_W.allFinite(); };
-    forces_ok_ =
-        (!applied.gravity_W || applied.gravity_W->allFinite()) && std::all_of(applied.forces.begin(), applied.forces.end(), is_finite);
+    forces_ok_ = (!applied.gravity_W || applied.gravity_W->allFinite()) &&
+                 std::all_of(applied.forces.begin(), applied.forces.end(), is_finite);
     scratch_.gravity_W = forces_ok_ ? applied.gravity_W.value_or(model_.options.gravity_W) : model_.options.gravity_W;
     scratch_.forces = forces_ok_ ? applied.forces : std::span<const BodyForce>{};
   }
@@ -90,8 +93,8 @@ class Tick {
     return report_;
   }
 
-  // Doubles the parts until what they change is within the tolerance: halving a second-order step leaves a third of the change as error. The
-  // next tick begins with half of what this one needed.
+  // Doubles the parts until what they change is within the tolerance: halving a second-order step leaves a third of the
+  // change as error. The next tick begins with half of what this one needed.
   void runToTolerance() {
     scratch_.before = state_;
     int parts = std::max(1, state_.parts / 2);
@@ -147,7 +150,8 @@ class Tick {
     double h = rest < 2.001 * part_ || isSpent() ? rest : 2 * part_;  // leaves no crumb of round-off
     attempt(h);
     turns_far_ = somethingTurnsFar(h);
-    for (; turns_far_ && !isSpent() && h > model_.options.h / kMostTurningParts; turns_far_ = somethingTurnsFar(h)) attempt(h *= 0.5);
+    for (; turns_far_ && !isSpent() && h > model_.options.h / kMostTurningParts; turns_far_ = somethingTurnsFar(h))
+      attempt(h *= 0.5);
     if (model_.has_corners && !isSpent() && flingsCorners(h)) attempt(h);
     part_ = h;
     if (mayHit()) notePushedPairs(model_, state_, scratch_);
@@ -187,8 +191,8 @@ class Tick {
     return repeats_ >= kMostRepeats;
   }
 
-  // Attempts the part up to the hit. What fingers push goes another way there than over the whole part: a hit that comes sooner on that way
-  // cuts it again.
+  // Attempts the part up to the hit. What fingers push goes another way there than over the whole part: a hit
+  // that comes sooner on that way cuts it again.
   double cutAt(double t) {
     constexpr int kMostCuts = 4;
     constexpr double kSooner = 0.999, kSameTime = 1e-14;
@@ -207,41 +211,46 @@ class Tick {
   }
 
   bool somethingLands() const {
-    return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(), [](const ImpactPair& p) { return p.lands; });
+    return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(),
+                       [](const ImpactPair& p) { return p.lands; });
   }
 
   bool hitsStop() const { return !scratch_.impact_pairs.empty() && scratch_.impact_pairs.front().stop >= 0; }
   bool somethingPushesImpacts() const {
-    return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(),
-                       [&](const ImpactPair& p) { return scratch_.bodies[p.a].touched || scratch_.bodies[p.b].touched; });
+    return std::any_of(scratch_.impact_pairs.begin(), scratch_.impact_pairs.end(), [&](const ImpactPair& p) {
+      return scratch_.bodies[p.a].touched || scratch_.bodies[p.b].touched;
+    });
   }
 
   void finish(double h) {
     conclude();
     left_ = h < left_ - stop_ ? left_ - h : stop_;
   }
-  // Bodies that something pushes on. Contacts wander round a body that turns so far, and those of the middle don't show it: needles and sheets,
-  // which friction spins up, would gain energy.
+  // Bodies that something pushes on. Contacts wander round a body that turns so far, and those of the middle don't show
+  // it: needles and sheets, which friction spins up, would gain energy.
   bool somethingTurnsFar(double h) const {
     if (treesTurnFar(model_, state_, scratch_)) return true;
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyScratch& body = scratch_.bodies[i];
-      if (!body.touched || !model_.bodies[i].dynamic || model_.bodies[i].rotation.kind == FreeRotation::Kind::kSpherical) continue;
+      if (!body.touched || !model_.bodies[i].dynamic ||
+          model_.bodies[i].rotation.kind == FreeRotation::Kind::kSpherical)
+        continue;
       const Vec3 w_end_W = endAngularVelocity(model_, scratch_, static_cast<int>(i));
       if (h * h * std::max(body.start.w_W.squaredNorm(), w_end_W.squaredNorm()) > kFarTurn * kFarTurn) return true;
     }
     return false;
   }
 
-  // Contacts may fling a corner of a body further within this part than anything was looked for: those of a sheet between the floor and something
-  // heavy. Then its contacts are looked for so far. Whether there is such a body.
+  // Contacts may fling a corner of a body further within this part than anything was looked for: those of a sheet
+  // between the floor and something heavy. Then its contacts are looked for so far. Whether there is such a body.
   bool flingsCorners(double h) {
     bool flings = false;
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyModel& body = model_.bodies[i];
       BodyScratch& s = scratch_.bodies[i];
       if (!s.touched || !body.dynamic || body.corner_reach == 0) continue;
-      const double way = h * body.corner_reach * angularVelocity(body.rotation, s.X_WI_mid.q, s.angular_impulse_W).norm();
+      const double way =
+          h * body.corner_reach * angularVelocity(body.rotation, s.X_WI_mid.q, s.angular_impulse_W).norm();
       if (!(way > std::max(model_.options.contact_margin, s.flung))) continue;
       s.flung = way;
       flings = true;
@@ -319,7 +328,8 @@ class Tick {
 
   // Cost of a part of a tick besides its solve.
   void chargeSurroundings() {
-    charge(kPerBody * std::ssize(scratch_.bodies) + kPerPair * std::ssize(model_.pairs) + kPerContact * std::ssize(scratch_.contacts),
+    charge(kPerBody * std::ssize(scratch_.bodies) + kPerPair * std::ssize(model_.pairs) +
+               kPerContact * std::ssize(scratch_.contacts),
            scratch_);
   }
 
@@ -353,10 +363,13 @@ StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratc
   return step(model, state, scratch, inputs, nullptr);
 }
 
-StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs, ContactSource* source) {
+StepReport step(const WorldModel& model, WorldState& state, WorldScratch& scratch, const StepInputs& inputs,
+                ContactSource* source) {
   PINCER_DEMAND(inputs.points.size() == model.points.size(), "step: one input per driven point");
-  PINCER_DEMAND(inputs.applied.forces.empty() || inputs.applied.forces.size() == model.bodies.size(), "step: one force per body, or none");
-  PINCER_DEMAND(inputs.motions.size() <= static_cast<std::size_t>(model.driven_count), "step: no more motions than driven bodies");
+  PINCER_DEMAND(inputs.applied.forces.empty() || inputs.applied.forces.size() == model.bodies.size(),
+                "step: one force per body, or none");
+  PINCER_DEMAND(inputs.motions.size() <= static_cast<std::size_t>(model.driven_count),
+                "step: no more motions than driven bodies");
   PINCER_DEMAND(state.bodies.size() == model.bodies.size() && state.points.size() == model.points.size() &&
                     state.contacts.size() == static_cast<std::size_t>(model.options.max_contacts) &&
                     state.driven_w_W.size() == static_cast<std::size_t>(model.driven_count),

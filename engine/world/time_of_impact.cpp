@@ -23,7 +23,8 @@ constexpr int kRootSteps = 40;          // a sphere above a plane needs one, rot
 struct Approach {
   double phi, u, a;
 
-  // Time to phi = 0 on the parabola; infinite if it opens before it closes. What overlaps has closed, if ever, in the past.
+  // Time to phi = 0 on the parabola; infinite if it opens before it closes. What
+  // overlaps has closed, if ever, in the past.
   double timeLeft() const {
     const double root = std::sqrt(std::max(u * u - 2 * a * phi, 0.0));
     if (u < 0) return phi > 0 && u * u < 2 * a * phi ? std::numeric_limits<double>::infinity() : 2 * phi / (root - u);
@@ -44,8 +45,8 @@ Moment momentOf(const WorldModel& model, const WorldState& state, WorldScratch& 
   const BodyScratch& now = scratch.bodies[i];
   if (!body.dynamic) {
     if (!body.driven) return {s.X_WI, {}};
-    const DrivenPlace place =
-        drivenPlace({s.X_WI, {s.v_W, state.driven_w_W[body.motion]}}, {now.X_WB_end, now.free}, scratch.h, t / scratch.h);
+    const DrivenPlace place = drivenPlace({s.X_WI, {s.v_W, state.driven_w_W[body.motion]}}, {now.X_WB_end, now.free},
+                                          scratch.h, t / scratch.h);
     return {place.X_WB, place.motion};
   }
   if (isHeldBody(model, body)) {
@@ -79,8 +80,9 @@ class ClosingPair {
     margin_ = 2 * (model.options.contact_margin + scratch.h * std::max(before, after));
   }
 
-  // Newton's method on the parabolas of the points. A gap between convex bodies that don't turn is a convex function of time, so that each
-  // step falls short of the root: so does a search that the budget cuts short; how far the bodies may turn in a step is limited by the gap.
+  // Newton's method on the parabolas of the points. A gap between convex bodies that don't turn is a convex function of
+  // time, so that each step falls short of the root: so does a search that the budget cuts short; how far the bodies
+  // may turn in a step is limited by the gap.
   double time() {
     double t = 0;
     for (int n = 0; n < kRootSteps && !isSpent(scratch_); ++n) {
@@ -126,19 +128,22 @@ class ClosingPair {
 
   // Of the gap at this point [m/s].
   static double rateOf(const Moment& a, const Moment& b, const contact::PairPoint& point) {
-    const Vec3 v_a = a.motion.v_W + a.motion.w_W.cross(point.p_W - a.X_WI.p), v_b = b.motion.v_W + b.motion.w_W.cross(point.p_W - b.X_WI.p);
+    const Vec3 v_a = a.motion.v_W + a.motion.w_W.cross(point.p_W - a.X_WI.p),
+               v_b = b.motion.v_W + b.motion.w_W.cross(point.p_W - b.X_WI.p);
     return point.n_W.dot(v_a - v_b);
   }
 
   // Of a pair that touches already: what touches, and what closes slowly.
-  bool isBystander(const ColliderModel& a, const ColliderModel& b, const contact::PairPoint& point, const Approach& approach) const {
+  bool isBystander(const ColliderModel& a, const ColliderModel& b, const contact::PairPoint& point,
+                   const Approach& approach) const {
     return approach.u > -kAlongWith * hardLanding(model_, scratch_) ||
            pushedBefore(state_, contactId(model_.shape_bits, sideOf(model_, a), sideOf(model_, b), point.feature));
   }
 
   Next limitTurn(const Moment& a, const Moment& b, double nearest, Next next) const {
     const BodyModel &A = model_.bodies[pair_.a], &B = model_.bodies[pair_.b];
-    const double turning = a.motion.w_W.norm() * A.corner_reach + b.motion.w_W.norm() * B.corner_reach;  // speed of what turns [m/s]
+    // speed of what turns [m/s]
+    const double turning = a.motion.w_W.norm() * A.corner_reach + b.motion.w_W.norm() * B.corner_reach;
     const double longest = (std::max(nearest, 0.0) + 0.25 * std::min(A.inner_radius, B.inner_radius)) / turning;
     if (turning > 0 && next.step > longest) return {longest, next.phi, false};
     next.is_exact = std::abs(next.step) <= 1e-15 * scratch_.h;
@@ -164,8 +169,9 @@ class ClosingPair {
 double timeOfImpact(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   double first = std::numeric_limits<double>::infinity();
   for (const ImpactPair& pair : scratch.impact_pairs) {
-    const double t = pair.stop >= 0 ? timeOfStop(model, state, scratch, scratch.joint_rows[static_cast<std::size_t>(pair.stop)])
-                                    : ClosingPair(model, state, scratch, pair).time();
+    const double t = pair.stop >= 0
+                         ? timeOfStop(model, state, scratch, scratch.joint_rows[static_cast<std::size_t>(pair.stop)])
+                         : ClosingPair(model, state, scratch, pair).time();
     first = std::min(first, t);
   }
   return first;

@@ -49,7 +49,8 @@ struct SpanningJoints {
 // Which joints make the tree: first those that have more than a kind, then welds, pivots and sliders, then balls.
 class SpanningTree {
  public:
-  SpanningTree(const WorldModel& model, const std::vector<CouplingModel>& couplings) : model_(model), must_(model.joints.size(), false) {
+  SpanningTree(const WorldModel& model, const std::vector<CouplingModel>& couplings)
+      : model_(model), must_(model.joints.size(), false) {
     for (std::size_t j = 0; j < must_.size(); ++j) must_[j] = !isPlain(model.joints[j]) || model.joints[j].damping > 0;
     for (const DriveModel& drive : model.drives) {
       for (const DriveTerm& term : drive.terms) must_[term.joint] = true;
@@ -170,9 +171,10 @@ class TreeMaker {
 
   void takeBase(const JointModel& joint) {
     if (!tree_.links.empty() && tree_.base != joint.b)
-      throw InputError(fmt::format(
-          "\"{}\" and \"{}\": a drive or a coupling ties them together, but they hang on different bodies. Hold both to the same one.",
-          model_.bodies[tree_.links[0].body].name, model_.bodies[joint.a].name));
+      throw InputError(
+          fmt::format("\"{}\" and \"{}\": a drive or a coupling ties them together, but they hang on different bodies. "
+                      "Hold both to the same one.",
+                      model_.bodies[tree_.links[0].body].name, model_.bodies[joint.a].name));
     tree_.base = joint.b;
   }
 
@@ -180,11 +182,12 @@ class TreeMaker {
     const JointModel& joint = model_.joints[j];
     const bool is_held = joint.b < 0 || !model_.bodies[joint.b].dynamic;
     if (is_held && joint.b != tree_.base)
-      throw InputError(
-          fmt::format("body \"{}\": its joints close a loop over two bodies that don't hang together. Hold all of the loop to the "
-                      "same one.",
-                      model_.bodies[joint.a].name));
-    tree_.loops.push_back({j, joint.kind, model_.bodies[joint.a].link, is_held ? -1 : model_.bodies[joint.b].link, joint.X_AJ, joint.X_BJ});
+      throw InputError(fmt::format(
+          "body \"{}\": its joints close a loop over two bodies that don't hang together. Hold all of the loop to the "
+          "same one.",
+          model_.bodies[joint.a].name));
+    tree_.loops.push_back({j, joint.kind, model_.bodies[joint.a].link, is_held ? -1 : model_.bodies[joint.b].link,
+                           joint.X_AJ, joint.X_BJ});
   }
 
   void checkAllHang() const {
@@ -192,7 +195,8 @@ class TreeMaker {
       for (const int body : {model_.joints[j].a, model_.joints[j].b}) {
         if (body < 0 || !model_.bodies[body].dynamic || model_.bodies[body].tree >= 0) continue;
         throw InputError(
-            fmt::format("body \"{}\": nothing holds it and what it is joined with to the world. Limits, springs, drives and dry friction, "
+            fmt::format("body \"{}\": nothing holds it and what it is joined with to the world. Limits, springs, "
+                        "drives and dry friction, "
                         "and more than {} "
                         "freedoms, need a tree that hangs on the world, on a static or on a driven body: add a joint.",
                         model_.bodies[body].name, kMoverFreedoms));
@@ -230,22 +234,24 @@ std::vector<int> jointsOf(const JointGroup& group) {
 // A linkage of pivots and sliders: its free course is of 4th order as a tree, of second by elimination (joints.h).
 bool isBetterAsTree(const WorldModel& model, const JointGroup& group, SpanningTree& spanning) {
   const auto first = model.joints.begin() + group.first;
-  const bool is_linkage = group.count > 1 && hangs(model, group) && std::all_of(first, first + group.count, [](const JointModel& joint) {
-                            return joint.kind == JointKind::kPivot || joint.kind == JointKind::kSlider;
-                          });
+  const bool is_linkage =
+      group.count > 1 && hangs(model, group) && std::all_of(first, first + group.count, [](const JointModel& joint) {
+        return joint.kind == JointKind::kPivot || joint.kind == JointKind::kSlider;
+      });
   return is_linkage && spanning.canClose(spanning.of(jointsOf(group)));
 }
 
 // Per group, whether it becomes a tree; ties what drives and couplings bind.
-std::vector<bool> whichBecomeTrees(const WorldModel& model, const std::vector<CouplingModel>& couplings, SpanningTree& spanning,
-                                   Ties& ties) {
+std::vector<bool> whichBecomeTrees(const WorldModel& model, const std::vector<CouplingModel>& couplings,
+                                   SpanningTree& spanning, Ties& ties) {
   std::vector<bool> become(model.joint_groups.size(), false);
   for (std::size_t g = 0; g < become.size(); ++g) {
     const JointGroup& group = model.joint_groups[g];
     const auto first = model.joints.begin() + group.first;
-    const bool is_large = freedomsOf(model, group) > kMoverFreedoms || 6 * std::ssize(group.bodies) > kMostGroupFreedoms;
-    become[g] =
-        !std::all_of(first, first + group.count, isPlain) || (is_large && hangs(model, group)) || isBetterAsTree(model, group, spanning);
+    const bool is_large =
+        freedomsOf(model, group) > kMoverFreedoms || 6 * std::ssize(group.bodies) > kMostGroupFreedoms;
+    become[g] = !std::all_of(first, first + group.count, isPlain) || (is_large && hangs(model, group)) ||
+                isBetterAsTree(model, group, spanning);
   }
   for (const DriveModel& drive : model.drives) {
     for (const DriveTerm& term : drive.terms) {
@@ -261,9 +267,11 @@ std::vector<bool> whichBecomeTrees(const WorldModel& model, const std::vector<Co
   return become;
 }
 
-void addCouplings(const WorldModel& model, const std::vector<CouplingModel>& couplings, const TreeMaker& maker, TreeModel& tree) {
+void addCouplings(const WorldModel& model, const std::vector<CouplingModel>& couplings, const TreeMaker& maker,
+                  TreeModel& tree) {
   for (const CouplingModel& coupling : couplings) {
-    const int follower = maker.coordinateOf(placeOf(model, coupling.joint)), leader = maker.coordinateOf(placeOf(model, coupling.follows));
+    const int follower = maker.coordinateOf(placeOf(model, coupling.joint)),
+              leader = maker.coordinateOf(placeOf(model, coupling.follows));
     if (follower < 0 || leader < 0) continue;
     tree.coordinates[follower].leader = leader;
     tree.coordinates[follower].polynomial = coupling.polynomial;
@@ -310,13 +318,15 @@ std::vector<double> jointsAtStart(const TreeModel& tree) {
   return q;
 }
 
-void makeTree(const std::vector<int>& joints, const std::vector<CouplingModel>& couplings, SpanningTree& spanning, WorldModel& model) {
+void makeTree(const std::vector<int>& joints, const std::vector<CouplingModel>& couplings, SpanningTree& spanning,
+              WorldModel& model) {
   const SpanningJoints sorted = spanning.of(joints);
   if (!spanning.canClose(sorted))
-    throw InputError(fmt::format(
-        "body \"{}\": its joints close a loop, and each of them has limits, a spring, a drive, damping or friction. A joint that "
-        "closes a loop has none: leave one of the loop's without.",
-        model.bodies[model.joints[sorted.of_loops.front()].a].name));
+    throw InputError(
+        fmt::format("body \"{}\": its joints close a loop, and each of them has limits, a spring, a drive, damping or "
+                    "friction. A joint that "
+                    "closes a loop has none: leave one of the loop's without.",
+                    model.bodies[model.joints[sorted.of_loops.front()].a].name));
   TreeMaker maker(model, sorted);
   TreeModel tree = maker.make();
   addCouplings(model, couplings, maker, tree);
@@ -354,7 +364,8 @@ void findTrees(const std::vector<CouplingModel>& couplings, WorldModel& model) {
     if (!become[g] || root[g] != g) continue;
     std::vector<int> joints;
     for (int k = g; k < count; ++k) {
-      for (int j = 0; root[k] == g && j < model.joint_groups[k].count; ++j) joints.push_back(model.joint_groups[k].first + j);
+      for (int j = 0; root[k] == g && j < model.joint_groups[k].count; ++j)
+        joints.push_back(model.joint_groups[k].first + j);
     }
     makeTree(joints, couplings, spanning, model);
   }

@@ -1,5 +1,5 @@
-// tree_builder: makes trees (engine/tree.h) of the groups of joints that need one: whose joints have limits, springs, drives, dry friction or armatures, or
-// that are too large for one mover.
+// tree_builder: makes trees (engine/tree.h) of the groups of joints that need one: whose joints have limits, springs,
+// drives, dry friction or armatures, or that are too large for one mover.
 //
 //   links, rates, freedoms: depth first, the children of a link in the order of their joints
 //   blocks: runs of freedoms without a branch, at most kMoverFreedoms long

@@ -16,7 +16,9 @@
 namespace pincer::engine {
 namespace {
 
-bool isDriven(const WorldModel& model, const TreeModel& tree) { return tree.base >= 0 && model.bodies[tree.base].driven; }
+bool isDriven(const WorldModel& model, const TreeModel& tree) {
+  return tree.base >= 0 && model.bodies[tree.base].driven;
+}
 
 TreeBase baseNow(const WorldModel& model, const WorldState& state, const TreeModel& tree) {
   if (tree.base < 0) return {};
@@ -27,13 +29,16 @@ TreeBase baseNow(const WorldModel& model, const WorldState& state, const TreeMod
 }
 
 // The middle of a driven base is predicted as that of all driven bodies is.
-BaseCourse baseCourse(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, const TreeModel& tree) {
+BaseCourse baseCourse(const WorldModel& model, const WorldState& state, const WorldScratch& scratch,
+                      const TreeModel& tree) {
   const TreeBase start = baseNow(model, state, tree);
   if (!isDriven(model, tree)) return {start, start, start};
   const BodyScratch& body = scratch.bodies[tree.base];
   const Vec3 a_W = (body.free.v_W - body.start.v_W) / scratch.h, alpha_W = (body.free.w_W - body.start.w_W) / scratch.h;
   const Motion mean{0.5 * (body.start.v_W + body.free.v_W), 0.5 * (body.start.w_W + body.free.w_W)};
-  return {{start.X_WB, body.start, a_W, alpha_W}, {body.X_WI_mid, mean, a_W, alpha_W}, {body.X_WB_end, body.free, a_W, alpha_W}};
+  return {{start.X_WB, body.start, a_W, alpha_W},
+          {body.X_WI_mid, mean, a_W, alpha_W},
+          {body.X_WB_end, body.free, a_W, alpha_W}};
 }
 
 void takeForces(const WorldScratch& scratch, const TreeModel& tree, TreeScratch& s) {
@@ -44,7 +49,8 @@ void takeForces(const WorldScratch& scratch, const TreeModel& tree, TreeScratch&
 }
 
 // Fills a link's motions: `free` only if something can touch it.
-void showLink(const WorldModel& model, const WorldState& state, const TreeModel& tree, int l, const TreeScratch& s, BodyScratch& out) {
+void showLink(const WorldModel& model, const WorldState& state, const TreeModel& tree, int l, const TreeScratch& s,
+              BodyScratch& out) {
   const int body = tree.links[l].body;
   out.X_WI_mid = linkPose(s.course.mid, l);
   out.start = {state.bodies[body].v_W, bodyAngularVelocity(model, state, body)};
@@ -96,8 +102,8 @@ void showAnswer(const WorldModel& model, const TreeModel& tree, const TreeScratc
   }
 }
 
-// True if neither contacts nor joints' own rows can push on it: then its free course needn't be the one in which M^ answers them. At rest the two must
-// agree to the last bit, or what holds a load feels less than it.
+// True if neither contacts nor joints' own rows can push on it: then its free course needn't be the one in which M^
+// answers them. At rest the two must agree to the last bit, or what holds a load feels less than it.
 bool movesAlone(const TreeModel& tree) {
   return !tree.may_touch && std::none_of(tree.coordinates.begin(), tree.coordinates.end(), [](const TreeCoordinate& c) {
     return c.traits.friction > 0 || std::isfinite(c.traits.lower) || std::isfinite(c.traits.upper);
@@ -139,7 +145,8 @@ bool isSlow(const Motion& m, double reach, double limit) {
   return m.v_W.squaredNorm() <= limit * limit && reach * reach * m.w_W.squaredNorm() <= limit * limit;
 }
 
-// A tree that hardly moves, now and a tick ago, that nothing leads elsewhere, and on which nothing pushes but impulses of the last tick.
+// A tree that hardly moves, now and a tick ago, that nothing leads elsewhere, and on which
+// nothing pushes but impulses of the last tick.
 bool comesToRest(const WorldModel& model, const WorldScratch& scratch, const TreeModel& tree, const TreeScratch& s) {
   const double limit = s.touched ? s.rest_speed : kRestSpeed;
   if (limit == 0 || isDriven(model, tree)) return false;
@@ -148,7 +155,8 @@ bool comesToRest(const WorldModel& model, const WorldScratch& scratch, const Tre
   for (std::size_t l = 0; l < tree.links.size(); ++l) {
     const BodyModel& body = model.bodies[tree.links[l].body];
     const double reach = std::min(body.bounding_radius, 1.0) + (tree.links[l].X_LJ.p).norm();
-    if (!isSlow(s.course.end.links[l].motion, reach, limit) || !isSlow(scratch.bodies[tree.links[l].body].start, reach, limit))
+    if (!isSlow(s.course.end.links[l].motion, reach, limit) ||
+        !isSlow(scratch.bodies[tree.links[l].body].start, reach, limit))
       return false;
   }
   return true;
@@ -158,7 +166,8 @@ bool comesToRest(const WorldModel& model, const WorldScratch& scratch, const Tre
 
 TreeScratch::TreeScratch(const TreeModel& tree)
     : drives(tree.drives.size()), forces(tree.links.size()), constant(tree.coordinates.size()), course(tree) {
-  for (std::vector<double>* columns : {&impulse, &gained, &row, &held}) columns->resize(static_cast<std::size_t>(tree.columnCount()));
+  for (std::vector<double>* columns : {&impulse, &gained, &row, &held})
+    columns->resize(static_cast<std::size_t>(tree.columnCount()));
   for (std::vector<char>* columns : {&locked, &pressed}) columns->resize(static_cast<std::size_t>(tree.columnCount()));
   q.resize(static_cast<std::size_t>(tree.q_count));
 }
@@ -177,7 +186,8 @@ void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch
     if (s.course.rough) limitFreeCourse(tree, s.base, push, q, u, scratch.h, s.course);
     s.touched = s.closing = false;
     if (tree.may_touch) placeFreeEnd(tree, s.base, q, s.course);
-    for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) showLink(model, state, tree, l, s, scratch.bodies[tree.links[l].body]);
+    for (int l = 0; l < static_cast<int>(tree.links.size()); ++l)
+      showLink(model, state, tree, l, s, scratch.bodies[tree.links[l].body]);
   }
 }
 
@@ -196,7 +206,8 @@ void predictTreeImpacts(const WorldModel& model, const WorldState& state, WorldS
     std::copy(u.begin(), u.end(), s.course.u_free.begin());
     std::fill(s.course.way_free.begin(), s.course.way_free.end(), 0.0);
     s.course.end = s.course.mid;
-    for (int l = 0; l < static_cast<int>(tree.links.size()); ++l) showLink(model, state, tree, l, s, scratch.bodies[tree.links[l].body]);
+    for (int l = 0; l < static_cast<int>(tree.links.size()); ++l)
+      showLink(model, state, tree, l, s, scratch.bodies[tree.links[l].body]);
   }
 }
 
@@ -209,9 +220,11 @@ void gatherTrees(const WorldModel& model, WorldScratch& scratch) {
     for (std::size_t l = 0; l < model.trees[t].links.size(); ++l) {
       const BodyScratch& body = scratch.bodies[model.trees[t].links[l].body];
       gatherMover(body, s);
-      if (body.touched) addWrench(model.trees[t], s.course.mid, static_cast<int>(l), body.impulse_W, body.angular_impulse_W, s.impulse);
+      if (body.touched)
+        addWrench(model.trees[t], s.course.mid, static_cast<int>(l), body.impulse_W, body.angular_impulse_W, s.impulse);
     }
-    std::transform(s.impulse.begin(), s.impulse.end(), s.pressed.begin(), [](double r) { return static_cast<char>(r != 0); });
+    std::transform(s.impulse.begin(), s.impulse.end(), s.pressed.begin(),
+                   [](double r) { return static_cast<char>(r != 0); });
   }
   for (const JointRowScratch& row : scratch.joint_rows) {
     if (!row.touched || row.tree < 0) continue;
@@ -291,11 +304,13 @@ LinkMoment linkAt(const WorldModel& model, const WorldState& state, WorldScratch
   TreeScratch& s = scratch.trees[model.bodies[body].tree];
   TreeBase base = s.base.start;
   if (isDriven(model, tree)) {
-    const DrivenPlace place = drivenPlace({base.X_WB, base.motion}, {s.base.end.X_WB, s.base.end.motion}, scratch.h, t / scratch.h);
+    const DrivenPlace place =
+        drivenPlace({base.X_WB, base.motion}, {s.base.end.X_WB, s.base.end.motion}, scratch.h, t / scratch.h);
     base.X_WB = place.X_WB;
     base.motion = place.motion;
   }
-  advanceTree(tree, base, {s.gained, scratch.h, s.closing}, t, treeCoordinates(tree, state), treeRates(tree, state), s.course, s.q, s.row);
+  advanceTree(tree, base, {s.gained, scratch.h, s.closing}, t, treeCoordinates(tree, state), treeRates(tree, state),
+              s.course, s.q, s.row);
   const int l = model.bodies[body].link;
   return {linkPose(s.course.end, l), s.course.end.links[l].motion};
 }

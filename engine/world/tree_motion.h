@@ -1,8 +1,10 @@
-// tree_motion: trees in a tick, between what the engine knows of bodies and what trees know of their coordinates (engine/tree/tree_course.h).
+// tree_motion: trees in a tick, between what the engine knows of bodies and what trees know of their
+// coordinates (engine/tree/tree_course.h).
 //
 //   gained = M^^-1 (sum over links J^T (impulse, moment) + impulses along joints),   u+ = u_free + gained
 //
-// Links are bodies to all else: their motions at the start, without contact at the end, and at the end stand in BodyScratch, their poses in the state.
+// Links are bodies to all else: their motions at the start, without contact at the end, and at the end stand
+// in BodyScratch, their poses in the state.
 #pragma once
 #include <span>
 
@@ -11,7 +13,8 @@
 
 namespace pincer::engine {
 
-// Free courses; links' places in the middle and motions. After drives and constant forces are set (joint_rows.h) and driven bodies are predicted.
+// Free courses; links' places in the middle and motions. After drives and constant forces are set
+// (joint_rows.h) and driven bodies are predicted.
 void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 // Predicts an impact, in which no time passes: M without drives, springs and dampers.
 void predictTreeImpacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
@@ -22,7 +25,8 @@ void gatherTrees(const WorldModel& model, WorldScratch& scratch);
 // To the end of this part of the tick.
 void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch);
 
-// True if something of a tree turns so far in this part of the tick that its middle doesn't show how it goes. After gatherTrees.
+// True if something of a tree turns so far in this part of the tick that its middle
+// doesn't show how it goes. After gatherTrees.
 bool treesTurnFar(const WorldModel& model, const WorldState& state, const WorldScratch& scratch);
 
 // After an impact: the velocities of what was struck.
@@ -35,8 +39,8 @@ struct LinkMoment {
 };
 LinkMoment linkAt(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int body, double t);
 
-// Makes room for trees in a state whose bodies are placed, reads their coordinates and rates off these, and puts the links where the joints hold them.
-// Throws InputError where a coordinate isn't where the one that it follows has it.
+// Makes room for trees in a state whose bodies are placed, reads their coordinates and rates off these, and puts the
+// links where the joints hold them. Throws InputError where a coordinate isn't where the one that it follows has it.
 void readTrees(const WorldModel& model, WorldState& state);
 
 // Energies of the coordinates' armatures and of their springs [J].

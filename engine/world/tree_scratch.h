@@ -20,7 +20,8 @@ struct TreeScratch {
   std::vector<double> impulse, gained;
   bool touched = false, closing = false;  // some contact pushes on a link or a joint; one of those closes in this tick
   double rest_speed = 0;                  // see MoverScratch
-  // Columns that dry friction holds without a row (joint_rows.h), and if there are any; columns that bodies' contacts push; impulses that hold.
+  // Columns that dry friction holds without a row (joint_rows.h), and if there are any; columns that
+  // bodies' contacts push; impulses that hold.
   std::vector<char> locked, pressed;
   bool has_locked = false;
   std::vector<double> held;
@@ -31,13 +32,15 @@ struct TreeScratch {
 
 // A tree's share of the state.
 inline std::span<const double> treeCoordinates(const TreeModel& tree, const WorldState& state) {
-  return std::span(state.tree_q).subspan(static_cast<std::size_t>(tree.first_q), static_cast<std::size_t>(tree.q_count));
+  return std::span(state.tree_q)
+      .subspan(static_cast<std::size_t>(tree.first_q), static_cast<std::size_t>(tree.q_count));
 }
 inline std::span<const double> treeRates(const TreeModel& tree, const WorldState& state) {
   return std::span(state.tree_v).subspan(static_cast<std::size_t>(tree.first_v), tree.before.size());
 }
 inline std::span<double> treeCoordinates(const TreeModel& tree, WorldState& state) {
-  return std::span(state.tree_q).subspan(static_cast<std::size_t>(tree.first_q), static_cast<std::size_t>(tree.q_count));
+  return std::span(state.tree_q)
+      .subspan(static_cast<std::size_t>(tree.first_q), static_cast<std::size_t>(tree.q_count));
 }
 inline std::span<double> treeRates(const TreeModel& tree, WorldState& state) {
   return std::span(state.tree_v).subspan(static_cast<std::size_t>(tree.first_v), tree.before.size());

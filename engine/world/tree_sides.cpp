@@ -19,7 +19,8 @@ int moverOfColumn(const WorldModel& model, const TreeModel& tree, int column) {
 int outermostOf(const TreeModel& tree, const JointRowScratch& row) {
   if (row.kind != JointRowKind::kDrive) return tree.coordinates[row.element].column;
   int tip = -1;
-  for (const TreeDrive::Term& term : tree.drives[row.element].terms) tip = std::max(tip, tree.coordinates[term.coordinate].column);
+  for (const TreeDrive::Term& term : tree.drives[row.element].terms)
+    tip = std::max(tip, tree.coordinates[term.coordinate].column);
   return tip;
 }
 
@@ -30,7 +31,8 @@ void takeBlock(const TreeModel& tree, int block, int tip, std::span<const double
   }
 }
 
-void fillLinkSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int block, ContactSide& out) {
+void fillLinkSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int block,
+                  ContactSide& out) {
   const BodyModel& body = model.bodies[(is_a ? c.a : c.b).index];
   const TreeModel& tree = model.trees[body.tree];
   TreeScratch& s = scratch.trees[body.tree];
@@ -93,7 +95,8 @@ int moverOfRow(const WorldModel& model, const WorldScratch& scratch, const Conta
   return moverOfColumn(model, tree, outermostOf(tree, row));
 }
 
-void fillTreeSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover, ContactSide& out) {
+void fillTreeSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows, bool is_a, int mover,
+                  ContactSide& out) {
   for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);
   const Side& side = is_a ? c.a : c.b;
   if (side.kind == SideKind::kBody) {

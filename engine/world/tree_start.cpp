@@ -33,8 +33,10 @@ constexpr int kFromStart = 5;        // passes, from kLargestJointGap
 constexpr int kFromAnywhere = 50;    // from where one of the loop's joints was put
 constexpr double kIsClosed = 1e-12;  // [m, rad]
 
-// Closes the loops, where they can be: the other joints move, by their inertia, but hardly the one that `kept` is the column of.
-double closeTree(const TreeModel& tree, const TreeBase& base, int passes, int kept, std::span<double> q, std::span<double> u) {
+// Closes the loops, where they can be: the other joints move, by their inertia, but
+// hardly the one that `kept` is the column of.
+double closeTree(const TreeModel& tree, const TreeBase& base, int passes, int kept, std::span<double> q,
+                 std::span<double> u) {
   constexpr double kHeavy = 1e12;
   TreePlace place(tree);
   placeLinks(tree, base, q, place);
@@ -76,7 +78,9 @@ class TreeReader {
     const TreeBase base = baseOfTree(model_, state_, tree_);
     return {base.X_WB, base.motion};
   }
-  Frame frameOf(int body) const { return {state_.bodies[body].X_WI, {state_.bodies[body].v_W, bodyAngularVelocity(model_, state_, body)}}; }
+  Frame frameOf(int body) const {
+    return {state_.bodies[body].X_WI, {state_.bodies[body].v_W, bodyAngularVelocity(model_, state_, body)}};
+  }
 
   void readLink(const TreeLink& link) {
     const Frame parent = parentOf(link), own = frameOf(link.body);
@@ -106,10 +110,11 @@ class TreeReader {
 
   void checkFollows(const TreeCoordinate& own, std::span<const double> q, std::span<const double> follows) const {
     if (own.q < 0 || std::abs(q[own.q] - follows[own.q]) <= kLargestMiss) return;
-    throw InputError(fmt::format(
-        "the joint of body \"{}\": it starts at {:g}, and where the joint that it follows starts it must be at {:g}. Start both where "
-        "the coupling holds them.",
-        model_.bodies[tree_.links[own.link].body].name, q[own.q], follows[own.q]));
+    throw InputError(
+        fmt::format("the joint of body \"{}\": it starts at {:g}, and where the joint that it follows starts it must "
+                    "be at {:g}. Start both where "
+                    "the coupling holds them.",
+                    model_.bodies[tree_.links[own.link].body].name, q[own.q], follows[own.q]));
   }
 
   const WorldModel& model_;
@@ -123,7 +128,8 @@ double shareOf(const TreeModel& tree, const TreeCoordinate& own, std::span<const
   if (own.leader < 0) return 1;
   const double z = q[tree.coordinates[own.leader].q];
   double slope = 0;
-  for (std::size_t k = own.polynomial.size() - 1; k > 0; --k) slope = slope * z + static_cast<double>(k) * own.polynomial[k];
+  for (std::size_t k = own.polynomial.size() - 1; k > 0; --k)
+    slope = slope * z + static_cast<double>(k) * own.polynomial[k];
   return slope;
 }
 
@@ -138,15 +144,18 @@ void placeLinksOf(const WorldModel& model, const TreeModel& tree, WorldState& st
     const BodyModel& body = model.bodies[tree.links[l].body];
     const Motion& motion = place.links[l].motion;
     const Pose X_WI = linkPose(place, static_cast<int>(l));
-    state.bodies[tree.links[l].body] = {X_WI, motion.v_W, X_WI.q * body.moments.cwiseProduct(X_WI.q.conjugate() * motion.w_W)};
+    state.bodies[tree.links[l].body] = {X_WI, motion.v_W,
+                                        X_WI.q * body.moments.cwiseProduct(X_WI.q.conjugate() * motion.w_W)};
   }
 }
 
 const JointPlace& placeOfJoint(const WorldModel& model, int joint) {
-  PINCER_DEMAND(isIndex(joint, model.joint_places.size()), "jointPosition, setJoint: the joint is one that addJoint returned");
+  PINCER_DEMAND(isIndex(joint, model.joint_places.size()),
+                "jointPosition, setJoint: the joint is one that addJoint returned");
   const JointPlace& place = model.joint_places[joint];
   const JointKind kind = model.joints[place.joint].kind;
-  PINCER_DEMAND(kind == JointKind::kPivot || kind == JointKind::kSlider, "jointPosition, setJoint: the joint is a pivot or a slider");
+  PINCER_DEMAND(kind == JointKind::kPivot || kind == JointKind::kSlider,
+                "jointPosition, setJoint: the joint is a pivot or a slider");
   return place;
 }
 
@@ -156,10 +165,12 @@ struct ReadOff {
 };
 ReadOff readOff(const WorldModel& model, const WorldState& state, const JointModel& joint) {
   const bool is_held_to_world = joint.b < 0;
-  const Pose X_WK = state.bodies[joint.a].X_WI * joint.X_AJ, X_WJ = is_held_to_world ? joint.X_BJ : state.bodies[joint.b].X_WI * joint.X_BJ;
+  const Pose X_WK = state.bodies[joint.a].X_WI * joint.X_AJ,
+             X_WJ = is_held_to_world ? joint.X_BJ : state.bodies[joint.b].X_WI * joint.X_BJ;
   const Vec3 axis_W = X_WJ.q * Vec3::UnitZ(), w_a = bodyAngularVelocity(model, state, joint.a);
   const Vec3 w_b = is_held_to_world ? Vec3(Vec3::Zero()) : bodyAngularVelocity(model, state, joint.b);
-  if (joint.kind == JointKind::kPivot) return {turnNear(X_WJ.q.conjugate() * X_WK.q, joint.traits.start), axis_W.dot(w_a - w_b)};
+  if (joint.kind == JointKind::kPivot)
+    return {turnNear(X_WJ.q.conjugate() * X_WK.q, joint.traits.start), axis_W.dot(w_a - w_b)};
   Vec3 v_W = state.bodies[joint.a].v_W + w_a.cross(X_WK.p - state.bodies[joint.a].X_WI.p);
   if (!is_held_to_world) v_W -= state.bodies[joint.b].v_W + w_b.cross(X_WK.p - state.bodies[joint.b].X_WI.p);
   return {axis_W.dot(X_WK.p - X_WJ.p), axis_W.dot(v_W)};
@@ -232,8 +243,9 @@ void setJoint(const WorldModel& model, WorldState& state, int joint, double posi
   growCoordinates(tree, q, none, q);
   if (!tree.loops.empty() &&
       closeTree(tree, baseOfTree(model, state, tree), kFromAnywhere, own.column, q, treeRates(tree, state)) > kIsClosed)
-    throw InputError(fmt::format("setJoint: with the joint of body \"{}\" at {:g} its loop can't be closed. Put it nearer to where it was.",
-                                 model.bodies[tree.links[own.link].body].name, position));
+    throw InputError(fmt::format(
+        "setJoint: with the joint of body \"{}\" at {:g} its loop can't be closed. Put it nearer to where it was.",
+        model.bodies[tree.links[own.link].body].name, position));
   placeLinksOf(model, tree, state);
 }
 

@@ -2,8 +2,8 @@
 //
 //   r = s r',   s = h / h' where a contact carries, 1 where it is hit        of the same contact, in its present frame
 //
-// A tick that is cut is attempted several times from the same state. Where many contacts touch, each attempt's answer is nearer to the next one's than the
-// last tick's is: of a wall that is hit, by three digits.
+// A tick that is cut is attempted several times from the same state. Where many contacts touch, each attempt's answer
+// is nearer to the next one's than the last tick's is: of a wall that is hit, by three digits.
 #pragma once
 #include "pincer/engine/world/scratch.h"
 

@@ -10,17 +10,21 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kPressedIn = 0.1;  // of 2 sin(alpha) S: far below what presses a point in, far above round-off of a squeeze
-constexpr double kLoose = 0.5;      // of tan(alpha): what is let go comes out without much of a squeeze
+// of 2 sin(alpha) S: far below what presses a point in, far above round-off of a squeeze
+constexpr double kPressedIn = 0.1;
+constexpr double kLoose = 0.5;  // of tan(alpha): what is let go comes out without much of a squeeze
 
-constexpr double kWedgedSqueeze = 1e3;  // w r_n of the problem's speeds: 1 / sin(alpha) where the groove opens by 0.1 degrees
+// w r_n of the problem's speeds: 1 / sin(alpha) where the groove opens by 0.1 degrees
+constexpr double kWedgedSqueeze = 1e3;
 
 bool isPressedPoint(const Contact& c) {
   const bool is_point = c.a.kind == SideKind::kPoint || c.b.kind == SideKind::kPoint;
   return is_point && c.memory && c.memory->active;
 }
 
-Vec3 lastImpulse(const ContactMemory& m) { return m.r[0] * m.t1_W + m.r[1] * m.n_W.cross(m.t1_W) + m.r[kNormalRow] * m.n_W; }
+Vec3 lastImpulse(const ContactMemory& m) {
+  return m.r[0] * m.t1_W + m.r[1] * m.n_W.cross(m.t1_W) + m.r[kNormalRow] * m.n_W;
+}
 
 void loosen(Contact& x, Contact& y) {
   const Vec3 b = x.n_W() + y.n_W();

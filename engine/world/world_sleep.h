@@ -1,8 +1,9 @@
-// world_sleep: all that outlives a tick beside the state: which tick would repeat the last one, of the world (rest.h) and of its islands
-// (island_sleep.h).
+// world_sleep: all that outlives a tick beside the state: which tick would repeat the last one, of the world
+// (rest.h) and of its islands (island_sleep.h).
 //
-// It belongs to the scratch and not to the state, for it is no cause: every use compares state and inputs with those that it was noted for, bit by bit,
-// and what it spares would have the same bits. Forget it between any two ticks, or step another state with it: the results are the same.
+// It belongs to the scratch and not to the state, for it is no cause: every use compares state and inputs with those
+// that it was noted for, bit by bit, and what it spares would have the same bits. Forget it between any two ticks, or
+// step another state with it: the results are the same.
 #pragma once
 #include <vector>
 

@@ -41,8 +41,8 @@ struct NearSurfaces {
 
 class BaselineFinger {
  public:
-  BaselineFinger(const GraspModel& model, FingerMethod method, GraspState& state, BaselineState& memory, GraspScratch& scratch,
-                 const FingerInput& input, int finger)
+  BaselineFinger(const GraspModel& model, FingerMethod method, GraspState& state, BaselineState& memory,
+                 GraspScratch& scratch, const FingerInput& input, int finger)
       : model_(model),
         state_(state),
         scratch_(scratch),
@@ -70,7 +70,8 @@ class BaselineFinger {
   NearSurfaces look(const Vec3& p_W, double margin, bool afresh) {
     NearSurfaces near;
     FingerFollower follower(state_.followed, index_, scratch_.spare_tracker);
-    for (int i = 0; i < static_cast<int>(model_.world.colliders.size()); ++i) lookAt(i, p_W, margin, afresh ? nullptr : &follower, near);
+    for (int i = 0; i < static_cast<int>(model_.world.colliders.size()); ++i)
+      lookAt(i, p_W, margin, afresh ? nullptr : &follower, near);
     return near;
   }
 
@@ -85,12 +86,14 @@ class BaselineFinger {
     const bool is_followed = follower && (finger_.shape || std::holds_alternative<contact::Mesh>(shape));
     contact::FingerTracker& tracker = is_followed ? follower->of(collider) : scratch_.spare_tracker;
     if (!is_followed) tracker = {};
-    const contact::FingerContacts found = fingerOnShape(finger_, shape, X_WS, {input_.q_WF, p_W}, margin, tracker, scratch_.world.patches);
+    const contact::FingerContacts found =
+        fingerOnShape(finger_, shape, X_WS, {input_.q_WF, p_W}, margin, tracker, scratch_.world.patches);
     if (is_followed) follower->noteGap(found.main().phi);
     for (int i = 0; i < found.count; ++i) {
       const contact::SurfaceContact& s = found.points[static_cast<std::size_t>(i)];
       if (s.phi > margin) continue;
-      const Vec3 to_centre = finger_.shape ? s.n_B : Vec3(signOf(s.phi + finger_.radius) * (p_SC - s.p_BS).normalized());
+      const Vec3 to_centre =
+          finger_.shape ? s.n_B : Vec3(signOf(s.phi + finger_.radius) * (p_SC - s.p_BS).normalized());
       near.add({c.body, collider, X_WS * s.p_BS, X_WS.q * s.n_B, X_WS.q * to_centre, s.phi});
     }
   }
@@ -239,8 +242,8 @@ class BaselineFinger {
 // Contacts of the fingers that are proxies; the others act by their forces alone.
 class ProxyContacts final : public engine::ContactSource {
  public:
-  ProxyContacts(const GraspModel& model, std::span<const FingerMethod> methods, GraspState& state, GraspScratch& scratch,
-                std::span<const FingerInput> inputs)
+  ProxyContacts(const GraspModel& model, std::span<const FingerMethod> methods, GraspState& state,
+                GraspScratch& scratch, std::span<const FingerInput> inputs)
       : model_(model), methods_(methods), state_(state), scratch_(scratch), inputs_(inputs) {}
   void addContacts(engine::WorldScratch&) override {
     for (std::size_t i = 0; i < methods_.size(); ++i) {
@@ -263,12 +266,14 @@ class ProxyContacts final : public engine::ContactSource {
 BaselineFingers::BaselineFingers(std::vector<FingerMethod> methods)
     : methods_(std::move(methods)), memories_(methods_.size()), reports_(methods_.size()) {}
 
-GraspReport BaselineFingers::step(const GraspModel& model, GraspState& state, GraspScratch& scratch, std::span<const FingerInput> inputs,
-                                  std::span<const engine::MotionInput> motions, std::span<const engine::DriveInput> controls) {
+GraspReport BaselineFingers::step(const GraspModel& model, GraspState& state, GraspScratch& scratch,
+                                  std::span<const FingerInput> inputs, std::span<const engine::MotionInput> motions,
+                                  std::span<const engine::DriveInput> controls) {
   setInputs(model, state, inputs, scratch);
   for (std::size_t i = 0; i < methods_.size(); ++i) {
     if (methods_[i] == FingerMethod::kProxy) continue;
-    reports_[i] = BaselineFinger(model, methods_[i], state, memories_[i], scratch, inputs[i], static_cast<int>(i)).run();
+    reports_[i] =
+        BaselineFinger(model, methods_[i], state, memories_[i], scratch, inputs[i], static_cast<int>(i)).run();
   }
   ProxyContacts contacts(model, methods_, state, scratch, inputs);
   const engine::StepReport report =

@@ -20,13 +20,15 @@ bool isOutside(std::span<const OuterSide> planes, const Vec3& x) {
 }
 
 // With exactly the first `count` planes of `set` active; false if they depend on each other or pull.
-bool solveActive(std::span<const OuterSide> planes, const PlaneSet& set, int count, const Vec3& goal, NearestOutside& out) {
+bool solveActive(std::span<const OuterSide> planes, const PlaneSet& set, int count, const Vec3& goal,
+                 NearestOutside& out) {
   Mat3 A = Mat3::Identity();
   Vec3 rhs = Vec3::Zero();
   for (int i = 0; i < count; ++i) {
     const OuterSide& p = planes[static_cast<std::size_t>(set[static_cast<std::size_t>(i)])];
     rhs[i] = p.b - p.n.dot(goal);
-    for (int j = 0; j < count; ++j) A(i, j) = p.n.dot(planes[static_cast<std::size_t>(set[static_cast<std::size_t>(j)])].n);
+    for (int j = 0; j < count; ++j)
+      A(i, j) = p.n.dot(planes[static_cast<std::size_t>(set[static_cast<std::size_t>(j)])].n);
   }
   if (A.determinant() < kParallel) return false;
   const Vec3 lambda = A.inverse() * rhs;
@@ -44,7 +46,8 @@ bool solveActive(std::span<const OuterSide> planes, const PlaneSet& set, int cou
 
 NearestOutside nearestOutside(std::span<const OuterSide> planes, const Vec3& goal) {
   PINCER_ASSERT(planes.size() <= static_cast<std::size_t>(kMostPlanes));
-  PINCER_ASSERT(std::all_of(planes.begin(), planes.end(), [](const OuterSide& plane) { return isUnitIfFinite(plane.n); }));
+  PINCER_ASSERT(
+      std::all_of(planes.begin(), planes.end(), [](const OuterSide& plane) { return isUnitIfFinite(plane.n); }));
   NearestOutside trial{goal, {}};
   if (isOutside(planes, goal)) return trial;
   const int n = static_cast<int>(planes.size());

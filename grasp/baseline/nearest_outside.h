@@ -2,7 +2,8 @@
 //
 //   min |x - g|^2   with   n_i . x >= b_i,      x = g + sum lambda_i n_i,   lambda_i >= 0
 //
-// At most three planes hold a point in space: all sets of up to three are tried, and the nearest point that all planes allow is taken.
+// At most three planes hold a point in space: all sets of up to three are tried, and the
+// nearest point that all planes allow is taken.
 #pragma once
 #include <array>
 #include <span>

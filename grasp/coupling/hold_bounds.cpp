@@ -40,7 +40,8 @@ double requiredDamping(double stiffness, double damping, double tick, double lea
 double passiveStiffness(const ArmPort& arm, double damping, double tick, double lead) {
   if (requiredDamping(0, damping, tick, lead) >= arm.damping) return 0;
   // |K theta T + B| has two branches; the smaller of the two roots is where the bound is reached first.
-  const double up = (arm.damping - damping) / (tick * (0.5 + lead)), down = (arm.damping + damping) / (tick * (0.5 - lead));
+  const double up = (arm.damping - damping) / (tick * (0.5 + lead)),
+               down = (arm.damping + damping) / (tick * (0.5 - lead));
   const double first = lead > -0.5 ? up : std::numeric_limits<double>::infinity();
   const double second = lead < 0.5 ? down : std::numeric_limits<double>::infinity();
   return std::min(first, second);

@@ -42,7 +42,8 @@ EnergyLedger::EnergyLedger(const GraspModel& model, const GraspState& state) : e
   }
 }
 
-void EnergyLedger::add(const GraspModel& model, const GraspState& state, const GraspScratch& scratch, std::span<const Vec3> f_W) {
+void EnergyLedger::add(const GraspModel& model, const GraspState& state, const GraspScratch& scratch,
+                       std::span<const Vec3> f_W) {
   PINCER_DEMAND(f_W.empty() || f_W.size() == entries_.size(), "EnergyLedger: one force per finger, or none at all");
   PINCER_DEMAND(model.fingers.size() == entries_.size(), "EnergyLedger: opened for another model");
   const double h = model.world.options.h;

@@ -94,7 +94,9 @@ bool boundSum(const PassivityOptions& options, double h, PassivityState& state, 
 
 // The missing energy, shared out by that which each finger gave, or would give, by itself.
 bool dampSum(const PassivityOptions& options, double h, PassivityState& state, std::span<Vec3> f_W) {
-  const auto own = [&](std::size_t i) { return std::max(flowOf(options, state, i, f_W[i], h).whole() - state.ports[i].balance, 0.0); };
+  const auto own = [&](std::size_t i) {
+    return std::max(flowOf(options, state, i, f_W[i], h).whole() - state.ports[i].balance, 0.0);
+  };
   double missing = -state.balance, given = 0;
   for (std::size_t i = 0; i < f_W.size(); ++i) {
     missing += flowOf(options, state, i, f_W[i], h).whole();
@@ -102,7 +104,8 @@ bool dampSum(const PassivityOptions& options, double h, PassivityState& state, s
   }
   if (!(missing > 0 && given > 0)) return false;
   bool acted = false;
-  for (std::size_t i = 0; i < f_W.size(); ++i) acted |= damp(options, h, missing * own(i) / given, state.ports[i], f_W[i]);
+  for (std::size_t i = 0; i < f_W.size(); ++i)
+    acted |= damp(options, h, missing * own(i) / given, state.ports[i], f_W[i]);
   return acted;
 }
 
@@ -120,9 +123,11 @@ bool dampEach(const PassivityOptions& options, double h, PassivityState& state, 
 void check(const PassivityOptions& options) {
   checkPassivityRange("most_damping", options.most_damping, 0, 1000, "In N s/m; arms of 50 g bear about 30 at 1 kHz.");
   checkPassivityRange("still_speed", options.still_speed, 1e-9, 1, "In m/s; 1e-4 is the usual one.");
-  checkPassivityRange("reserve", options.reserve, 0, 1e3, "In joules; 0 unless fingers are to lower what begins high up.");
+  checkPassivityRange("reserve", options.reserve, 0, 1e3,
+                      "In joules; 0 unless fingers are to lower what begins high up.");
   for (const ArmPort& arm : options.arms) {
-    checkPassivityRange("mass of an arm", arm.mass, 1e-4, 100, "In kilograms, at the tip; a Phantom Premium has 0.03 to 0.15.");
+    checkPassivityRange("mass of an arm", arm.mass, 1e-4, 100,
+                        "In kilograms, at the tip; a Phantom Premium has 0.03 to 0.15.");
     checkPassivityRange("damping of an arm", arm.damping, 0, 1000, "In N s/m; 0 if nobody measured it.");
   }
 }
@@ -133,7 +138,8 @@ double PassivityState::energy() const {
   return sum;
 }
 
-void observePorts(const PassivityOptions& options, std::span<const Vec3> p_WF, double stored, double h, PassivityState& state) {
+void observePorts(const PassivityOptions& options, std::span<const Vec3> p_WF, double stored, double h,
+                  PassivityState& state) {
   PINCER_DEMAND(p_WF.size() == state.ports.size(), "observePorts: one place per finger");
   PINCER_DEMAND(h > 0, "observePorts: the tick's length is positive");
   state.least_stored = state.started ? std::min(state.least_stored, stored) : stored;

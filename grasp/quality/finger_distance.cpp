@@ -10,8 +10,8 @@ namespace pincer::grasp {
 namespace {
 
 // Of a body's shapes that can be touched; none if it has none.
-std::optional<FingerDistance> nearestOf(const GraspModel& model, const GraspState& state, contact::PatchCache& patches, int finger,
-                                        int body, const Pose& X_WF) {
+std::optional<FingerDistance> nearestOf(const GraspModel& model, const GraspState& state, contact::PatchCache& patches,
+                                        int finger, int body, const Pose& X_WF) {
   const engine::BodyModel& b = model.world.bodies[static_cast<std::size_t>(body)];
   const Pose X_WB = engine::bodyPose(model.world, state.world, body);
   const FingerModel& f = model.fingers[static_cast<std::size_t>(finger)];
@@ -21,7 +21,8 @@ std::optional<FingerDistance> nearestOf(const GraspModel& model, const GraspStat
     if (engine::isOnlySeen(c.bits)) continue;
     const Pose X_WS = engine::poseOf(c, X_WB);
     contact::FingerTracker searches;
-    const contact::FingerContacts found = fingerOnShape(f, feltShape(model, collider), X_WS, X_WF, 0, searches, patches);
+    const contact::FingerContacts found =
+        fingerOnShape(f, feltShape(model, collider), X_WS, X_WF, 0, searches, patches);
     const contact::SurfaceContact& s = found.main();
     if (nearest && !(s.phi < nearest->gap)) continue;
     const Vec3 p_finger_W = X_WS * found.p_BT[0], n_W = X_WS.q * s.n_B;
@@ -34,7 +35,8 @@ std::optional<FingerDistance> nearestOf(const GraspModel& model, const GraspStat
 }  // namespace
 
 std::vector<FingerDistance> fingerDistances(const GraspModel& model, const GraspState& state) {
-  PINCER_DEMAND(state.fingers.size() == model.fingers.size(), "fingerDistances: the state is one of this model (makeState)");
+  PINCER_DEMAND(state.fingers.size() == model.fingers.size(),
+                "fingerDistances: the state is one of this model (makeState)");
   contact::PatchCache patches(1024);
   std::vector<FingerDistance> all;
   for (int finger = 0; finger < static_cast<int>(model.fingers.size()); ++finger) {

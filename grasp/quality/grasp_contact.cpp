@@ -13,7 +13,8 @@ std::vector<GraspContact> graspContacts(const GraspModel& model, const GraspScra
   const double h = scratch.world.h;
   std::vector<GraspContact> contacts;
   for (const engine::Contact& c : scratch.world.contacts) {
-    const bool finger_on_body = c.a.kind == engine::SideKind::kPoint && c.a.index < static_cast<int>(model.fingers.size()) &&
+    const bool finger_on_body = c.a.kind == engine::SideKind::kPoint &&
+                                c.a.index < static_cast<int>(model.fingers.size()) &&
                                 c.b.kind == engine::SideKind::kBody && c.b.index == body;
     if (!finger_on_body || !c.active()) continue;
     // c.r acts on the finger

@@ -15,7 +15,8 @@ Eigen::VectorXd stackedForces(const std::vector<GraspContact>& contacts) {
   Eigen::VectorXd f(4 * contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const GraspContact& c = contacts[i];
-    f.segment<4>(static_cast<Eigen::Index>(4 * i)) << c.f_n, c.f_T_C, c.torsion_radius > 0 ? c.tau_n / c.torsion_radius : 0;
+    f.segment<4>(static_cast<Eigen::Index>(4 * i)) << c.f_n, c.f_T_C,
+        c.torsion_radius > 0 ? c.tau_n / c.torsion_radius : 0;
   }
   return f;
 }

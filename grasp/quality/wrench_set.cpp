@@ -23,7 +23,8 @@ constexpr int kMostTurns = 200;
 constexpr int kRandomDirections = 52;
 constexpr int kVolumeDirections = 2000;
 
-// Directions that fill the sphere of any dimension evenly enough: normal deviates of an additive recurrence (M. Roberts 2018, R_d sequence).
+// Directions that fill the sphere of any dimension evenly enough: normal deviates of an additive
+// recurrence (M. Roberts 2018, R_d sequence).
 class Directions {
  public:
   Vec6 next() {
@@ -50,7 +51,8 @@ Eigen::MatrixXd spanOf(const std::vector<Eigen::Matrix<double, 6, 4>>& columns, 
   if (columns.empty()) return Eigen::MatrixXd(6, 0);
   Eigen::MatrixXd all(6, 4 * columns.size());
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    all.middleCols<4>(static_cast<Eigen::Index>(4 * i)) = columns[i] * Eigen::Vector4d(1, mu[i], mu[i], mu[i]).asDiagonal();
+    all.middleCols<4>(static_cast<Eigen::Index>(4 * i)) =
+        columns[i] * Eigen::Vector4d(1, mu[i], mu[i], mu[i]).asDiagonal();
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(all, Eigen::ComputeFullU);
   Eigen::Index rank = 0;
@@ -58,7 +60,8 @@ Eigen::MatrixXd spanOf(const std::vector<Eigen::Matrix<double, 6, 4>>& columns, 
   return svd.matrixU().leftCols(rank);
 }
 
-// max t  subject to  sum_j l_j w_j - t d = 0,  sum_j l_j + s = 1,  l, t, s >= 0: a revised simplex with the basis solved anew per pivot.
+// max t  subject to  sum_j l_j w_j - t d = 0,  sum_j l_j + s = 1,  l, t, s >= 0: a revised simplex with
+//                                                                  the basis solved anew per pivot.
 class RayProgramme {
  public:
   RayProgramme(const Eigen::VectorXd& d, double size)
@@ -118,7 +121,8 @@ class RayProgramme {
 
 WrenchSet::WrenchSet(const std::vector<GraspContact>& contacts, const Vec3& p_WC, double rho) {
   if (!(rho > 0 && std::isfinite(rho))) {
-    throw InputError(fmt::format("length for torques = {} is out of range (0, inf). It is in metres; take the body's radius.", rho));
+    throw InputError(
+        fmt::format("length for torques = {} is out of range (0, inf). It is in metres; take the body's radius.", rho));
   }
   for (const GraspContact& c : contacts) {
     columns_.push_back(graspColumns(c, p_WC, rho));

@@ -43,7 +43,8 @@ class FingerLook {
     engine::thinContacts(first, scratch_.world);
   }
 
-  // Distance of the finger's centre from a body's box, which holds the body's own way in the tick, beyond which it needn't be looked at [m].
+  // Distance of the finger's centre from a body's box, which holds the body's own way in the tick,
+  // beyond which it needn't be looked at [m].
   double furthest() const {
     const engine::WorldOptions& options = model_.world.options;
     return f_.radius + std::max(f_.reach, options.contact_margin) + options.h * point_.start.v_W.norm();
@@ -77,9 +78,11 @@ class FingerLook {
     contact::PatchCache& patches = scratch_.world.patches;
     const bool is_followed = f_.shape || std::holds_alternative<contact::Mesh>(shape);
     if (!is_followed)  // a sphere on a closed form
-      return take(contact::querySphere(shape, p_SC, f_.radius, margin, scratch_.spare_tracker.main.ball, patches), place, margin);
+      return take(contact::querySphere(shape, p_SC, f_.radius, margin, scratch_.spare_tracker.main.ball, patches),
+                  place, margin);
     contact::FingerTracker& tracker = follower_.of(number);
-    if (!f_.shape) return follow(contact::querySphere(shape, p_SC, f_.radius, margin, tracker.main.ball, patches), place, margin);
+    if (!f_.shape)
+      return follow(contact::querySphere(shape, p_SC, f_.radius, margin, tracker.main.ball, patches), place, margin);
     const Pose X_WF{scratch_.q_mid_WF[finger_], p_WC}, X_WS = engine::poseOf(place.collider, place.mid.X_WB_mid);
     follow(contact::queryFinger(shape, *f_.shape, X_WS.inverse() * X_WF, margin, tracker, patches), place, margin);
   }
@@ -128,7 +131,8 @@ class FingerLook {
     }
   }
 
-  // The two touch midway between the body's surface and the fingertip's, on the normal n_W but for meshes with force shading.
+  // The two touch midway between the body's surface and the fingertip's, on the
+  // normal n_W but for meshes with force shading.
   void add(const contact::SurfaceContact& found, const Place& place) {
     engine::Contact* const c = engine::addContact(scratch_.world, found.phi);
     if (!c) return;
@@ -140,7 +144,8 @@ class FingerLook {
     c->R_WC.col(2) = n_W;
     c->p_W = place.p_WS + place.R_WS * found.p_BS + 0.5 * found.phi * n_W;
     c->material = place.collider.material;
-    if (f_.pad.isSoft()) c->material.torsion_radius = torsionRadius(f_.pad, f_.radius, state_.fingers[finger_].normal_force);
+    if (f_.pad.isSoft())
+      c->material.torsion_radius = torsionRadius(f_.pad, f_.radius, state_.fingers[finger_].normal_force);
   }
 
   const GraspModel& model_;
@@ -156,11 +161,13 @@ class FingerLook {
 
 }  // namespace
 
-contact::FingerContacts fingerOnShape(const FingerModel& finger, const contact::Shape& shape, const Pose& X_WS, const Pose& X_WF,
-                                      double margin, contact::FingerTracker& tracker, contact::PatchCache& patches) {
+contact::FingerContacts fingerOnShape(const FingerModel& finger, const contact::Shape& shape, const Pose& X_WS,
+                                      const Pose& X_WF, double margin, contact::FingerTracker& tracker,
+                                      contact::PatchCache& patches) {
   const Pose X_BF = X_WS.inverse() * X_WF;
   if (finger.shape) return contact::queryFinger(shape, *finger.shape, X_BF, margin, tracker, patches);
-  const contact::SurfaceContacts found = contact::querySphere(shape, X_BF.p, finger.radius, margin, tracker.main.ball, patches);
+  const contact::SurfaceContacts found =
+      contact::querySphere(shape, X_BF.p, finger.radius, margin, tracker.main.ball, patches);
   contact::FingerContacts all;
   all.count = found.count;
   for (int i = 0; i < found.count; ++i) {
@@ -178,7 +185,8 @@ void findFingerContacts(const GraspModel& model, int finger, GraspState& state, 
   if (scratch.world.broad_phase) {
     const double reach = look.furthest();
     scratch.fingers[finger].gap = reach - model.fingers[finger].radius;  // nothing else is nearer
-    for (const int body : scratch.world.broad_phase->bodiesNear(scratch.world.points[finger].p_mid_W, reach)) look.at(body);
+    for (const int body : scratch.world.broad_phase->bodiesNear(scratch.world.points[finger].p_mid_W, reach))
+      look.at(body);
     return;
   }
   const int bodies = static_cast<int>(model.world.bodies.size());

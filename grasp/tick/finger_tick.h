@@ -8,7 +8,8 @@
 namespace pincer::grasp {
 
 // Fills scratch.inputs and q_mid_WF: where the devices lead the proxies.
-void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs, GraspScratch& scratch);
+void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs,
+               GraspScratch& scratch);
 
 // Fills scratch.fingers[finger] from the contacts of the tick.
 void reportFinger(const GraspModel& model, const GraspState& state, int finger, GraspScratch& scratch);
@@ -19,8 +20,10 @@ std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int fin
 // Fills FingerReport::pressure of a finger that has taxels, from its report and its contacts.
 void mapPressure(const GraspModel& model, int finger, GraspScratch& scratch);
 
-// Notes in `state` what the next tick needs to know of scratch.fingers[finger], and in that the touch of the tick before.
-void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state, GraspScratch& scratch);
+// Notes in `state` what the next tick needs to know of scratch.fingers[finger],
+// and in that the touch of the tick before.
+void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state,
+                    GraspScratch& scratch);
 
 // True if the fingers are turned as they were when their reports were made: what the pads feel turns with them.
 bool keepOrientations(std::span<const FingerInput> inputs, const GraspScratch& scratch);

@@ -20,7 +20,8 @@ int shapesToFollow(const GraspModel& model, const FingerModel& finger) {
 
 FollowedShapes placesFor(const GraspModel& model) {
   FollowedShapes all;
-  for (const FingerModel& finger : model.fingers) all.per_finger = std::max(all.per_finger, shapesToFollow(model, finger));
+  for (const FingerModel& finger : model.fingers)
+    all.per_finger = std::max(all.per_finger, shapesToFollow(model, finger));
   all.per_finger = std::min(all.per_finger, FollowedShapes::kMost);
   const std::size_t places = model.fingers.size() * static_cast<std::size_t>(all.per_finger);
   all.colliders.assign(places, -1);

@@ -7,8 +7,8 @@ namespace pincer::grasp {
 // Places for `model`'s fingers, all free.
 FollowedShapes placesFor(const GraspModel& model);
 
-// One look of a finger. A shape that isn't looked at is forgotten when the look ends; where more are near than there are places for, the nearest
-// keep them, and the others are looked at as if never seen before. Allocates nothing.
+// One look of a finger. A shape that isn't looked at is forgotten when the look ends; where more are near than there
+// are places for, the nearest keep them, and the others are looked at as if never seen before. Allocates nothing.
 class FingerFollower {
  public:
   // `spare` serves the shapes without a place.

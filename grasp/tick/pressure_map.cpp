@@ -12,7 +12,8 @@ namespace {
 constexpr int kRings = 3, kSpokes = 8;
 constexpr double kShare = 1.0 / (kRings * kSpokes);
 
-// Radii of the rings that halve each third of the load, over their mean: sqrt(m), and sqrt(1 - (1 - m)^(2/3)), for m = 1/6, 1/2, 5/6.
+// Radii of the rings that halve each third of the load, over their mean: sqrt(m), and sqrt(1
+// - (1 - m)^(2/3)), for m = 1/6, 1/2, 5/6.
 constexpr std::array<double, kRings> kEven = {0.6038502962160023, 1.0458993932116325, 1.350250310572365};
 constexpr std::array<double, kRings> kHertz = {0.5696773984788521, 1.0243369922570644, 1.4059856092640834};
 constexpr double kHalfRoot = 0.70710678118654752440;
@@ -20,10 +21,22 @@ constexpr double kCos = 0.92387953251128675613, kSin = 0.38268343236508977173;  
 
 // Unit directions; the rings take turns, so that the points don't lie on rays.
 using Spokes = std::array<std::array<double, 2>, kSpokes>;
-constexpr Spokes kStraight = {
-    {{1, 0}, {kHalfRoot, kHalfRoot}, {0, 1}, {-kHalfRoot, kHalfRoot}, {-1, 0}, {-kHalfRoot, -kHalfRoot}, {0, -1}, {kHalfRoot, -kHalfRoot}}};
-constexpr Spokes kTurned = {
-    {{kCos, kSin}, {kSin, kCos}, {-kSin, kCos}, {-kCos, kSin}, {-kCos, -kSin}, {-kSin, -kCos}, {kSin, -kCos}, {kCos, -kSin}}};
+constexpr Spokes kStraight = {{{1, 0},
+                               {kHalfRoot, kHalfRoot},
+                               {0, 1},
+                               {-kHalfRoot, kHalfRoot},
+                               {-1, 0},
+                               {-kHalfRoot, -kHalfRoot},
+                               {0, -1},
+                               {kHalfRoot, -kHalfRoot}}};
+constexpr Spokes kTurned = {{{kCos, kSin},
+                             {kSin, kCos},
+                             {-kSin, kCos},
+                             {-kCos, kSin},
+                             {-kCos, -kSin},
+                             {-kSin, -kCos},
+                             {kSin, -kCos},
+                             {kCos, -kSin}}};
 
 // A place along one axis: the taxel before it and how far on, 0 .. 1, it lies towards the next.
 struct Cell {

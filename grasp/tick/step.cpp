@@ -13,7 +13,8 @@ namespace pincer::grasp {
 namespace {
 
 // The finger turns evenly from where it was at the end of the last tick.
-void setRotation(const FingerInput& input, const FingerState& last, double h, engine::PointInput& point, Quat& q_mid_WF) {
+void setRotation(const FingerInput& input, const FingerState& last, double h, engine::PointInput& point,
+                 Quat& q_mid_WF) {
   PINCER_ASSERT(isUnitIfFinite(input.q_WF));
   q_mid_WF = input.q_WF;
   if (!last.seen || last.q_WF.coeffs() == input.q_WF.coeffs()) return;
@@ -24,7 +25,8 @@ void setRotation(const FingerInput& input, const FingerState& last, double h, en
 
 }  // namespace
 
-void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs, GraspScratch& scratch) {
+void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs,
+               GraspScratch& scratch) {
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     engine::PointInput& point = scratch.inputs[i];
     point.p_target_W = inputs[i].p_WF;
@@ -36,7 +38,8 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
     setRotation(inputs[i], state.fingers[i], h, point, scratch.q_mid_WF[i]);
     if (coupling.turn_stiffness + coupling.turn_damping > 0) {
       const engine::PointState& s = state.world.points[i];
-      scratch.q_mid_WF[i] = (quatFromRotationVector(s.turn_W + 0.5 * h * s.turn_rate_W) * scratch.q_mid_WF[i]).normalized();
+      scratch.q_mid_WF[i] =
+          (quatFromRotationVector(s.turn_W + 0.5 * h * s.turn_rate_W) * scratch.q_mid_WF[i]).normalized();
     }
     point.turned = model.fingers[i].along_normal;
     const bool has_axis = point.turned || coupling.twist_stiffness + coupling.twist_damping > 0;
@@ -48,9 +51,12 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
 std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int finger) {
   const std::vector<engine::Contact>& all = scratch.world.contacts;
   const auto less = [](const engine::Contact& c, std::uint64_t id) { return c.id < id; };
-  const std::uint64_t first_id = engine::contactId(0, {engine::SideKind::kPoint, 0, finger}, {}, 0);  // whatever it touches
+  // whatever it touches
+  const std::uint64_t first_id = engine::contactId(0, {engine::SideKind::kPoint, 0, finger}, {}, 0);
   const auto first = std::lower_bound(all.begin(), all.end(), first_id, less);
-  const auto is_other = [&](const engine::Contact& c) { return c.a.kind != engine::SideKind::kPoint || c.a.index != finger; };
+  const auto is_other = [&](const engine::Contact& c) {
+    return c.a.kind != engine::SideKind::kPoint || c.a.index != finger;
+  };
   return {first, std::find_if(first, all.end(), is_other)};
 }
 
@@ -66,7 +72,8 @@ double momentOfPoints(const GraspScratch& scratch, int finger, const FingerRepor
   return moment;
 }
 
-// Sums the contacts of one finger into its report; returns the way from its centre to their force-weighted mean place, or its direction.
+// Sums the contacts of one finger into its report; returns the way from its centre to their
+// force-weighted mean place, or its direction.
 Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
   Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero(), tangential_W = Vec3::Zero();
   double normal = 0, torsion = 0, largest = 0;  // impulses
@@ -78,7 +85,8 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
     impulse_W += c.impulse_W;
     tangential_W += c.impulse_W - r_n * n_W;
     normal += r_n;
-    if (engine::rowsOf(c.material) > engine::kTorsionRow) torsion += c.r[engine::kTorsionRow] * c.material.torsion_radius;
+    if (engine::rowsOf(c.material) > engine::kTorsionRow)
+      torsion += c.r[engine::kTorsionRow] * c.material.torsion_radius;
     report.sliding = report.sliding || c.sliding;
     p_sum += r_n * c.p_W;
     n_sum += r_n * n_W;
@@ -121,7 +129,8 @@ void reportTouch(const GraspModel& model, int finger, const Vec3& touch_W, Grasp
   const Quat& q_WF = scratch.q_mid_WF[finger];
   const Vec3 n_W = -scratch.nearest_n_W[finger];
   if (report.touching) {
-    report.touch = {true, q_WF, has_shape ? Vec3(report.p_WC - scratch.world.points[finger].p_mid_W) : touch_W, -report.n_W};
+    report.touch = {true, q_WF, has_shape ? Vec3(report.p_WC - scratch.world.points[finger].p_mid_W) : touch_W,
+                    -report.n_W};
   } else if (!n_W.isZero(0)) {
     report.nearest = {true, q_WF, has_shape ? scratch.nearest_d_W[finger] : n_W, n_W};
   }
@@ -143,7 +152,8 @@ void reportFinger(const GraspModel& model, const GraspState& state, int finger, 
   mapPressure(model, finger, scratch);
 }
 
-void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state, GraspScratch& scratch) {
+void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state,
+                    GraspScratch& scratch) {
   const FingerModel& f = model.fingers[finger];
   FingerReport& report = scratch.fingers[finger];
   FingerState& memory = state.fingers[finger];
@@ -207,7 +217,8 @@ std::span<const FingerReport> fingersOf(const GraspScratch& scratch) { return sc
 engine::WorldScratch& worldOf(GraspScratch& scratch) { return scratch.world; }
 const engine::WorldScratch& worldOf(const GraspScratch& scratch) { return scratch.world; }
 
-GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts, const std::vector<Vec3>& fingers) {
+GraspState makeState(const GraspModel& model, const std::vector<engine::BodyStart>& starts,
+                     const std::vector<Vec3>& fingers) {
   GraspState state{engine::makeState(model.world, starts, fingers), placesFor(model), {}};
   state.fingers.resize(model.fingers.size());
   return state;
@@ -217,9 +228,10 @@ GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scrat
                  std::span<const engine::MotionInput> motions, const engine::AppliedForces& applied,
                  std::span<const engine::DriveInput> controls) {
   PINCER_DEMAND(inputs.size() == model.fingers.size(), "step: one input per finger");
-  PINCER_DEMAND(state.fingers.size() == model.fingers.size() &&
-                    state.followed.trackers.size() == model.fingers.size() * static_cast<std::size_t>(state.followed.per_finger),
-                "step: the state is one of this model (makeState)");
+  PINCER_DEMAND(
+      state.fingers.size() == model.fingers.size() &&
+          state.followed.trackers.size() == model.fingers.size() * static_cast<std::size_t>(state.followed.per_finger),
+      "step: the state is one of this model (makeState)");
   PINCER_DEMAND(scratch.fingers.size() == model.fingers.size(), "step: the scratch is one of this model");
   setInputs(model, state, inputs, scratch);
   FingerContacts contacts(model, state, scratch, inputs);

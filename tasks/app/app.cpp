@@ -35,11 +35,13 @@ constexpr const char* kTexts = "Commands that tell about pincer";
 
 // The program's table of contents, in the order in which --help shows it.
 constexpr CommandEntry kCommands[] = {
-    {kExperiments, addRunCommand},   {kExperiments, addReportCommand}, {kExperiments, addExportCommand}, {kExperiments, addReplayCommand},
-    {kExperiments, addShareCommand}, {kExperiments, addSweepCommand},  {kPhysics, addSimCommand},        {kPhysics, addTestCommand},
-    {kPhysics, addPlanCommand},      {kPhysics, addImportCommand},     {kPhysics, addSolveCommand},      {kJudges, addVerifyCommand},
-    {kJudges, addStressCommand},     {kJudges, addBenchCommand},       {kThings, addMeshCommand},        {kThings, addDevicesCommand},
-    {kTexts, addKeysCommand},        {kTexts, addSchemaCommand},       {kTexts, addManualCommand},       {kTexts, addCompletionCommand}};
+    {kExperiments, addRunCommand},    {kExperiments, addReportCommand}, {kExperiments, addExportCommand},
+    {kExperiments, addReplayCommand}, {kExperiments, addShareCommand},  {kExperiments, addSweepCommand},
+    {kPhysics, addSimCommand},        {kPhysics, addTestCommand},       {kPhysics, addPlanCommand},
+    {kPhysics, addImportCommand},     {kPhysics, addSolveCommand},      {kJudges, addVerifyCommand},
+    {kJudges, addStressCommand},      {kJudges, addBenchCommand},       {kThings, addMeshCommand},
+    {kThings, addDevicesCommand},     {kTexts, addKeysCommand},         {kTexts, addSchemaCommand},
+    {kTexts, addManualCommand},       {kTexts, addCompletionCommand}};
 
 constexpr const char* kExamples = R"(
 Examples:
@@ -56,7 +58,9 @@ Exit codes: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 device, 5 interrupte
 // Printed text may have gone to a full disk or a closed pipe.
 int flushed(int exit_code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return exit_code;
-  complain("standard output can't be written: what was printed there isn't whole. Is the disk full, or has its reader ended?");
+  complain(
+      "standard output can't be written: what was printed there isn't whole. Is the disk full, or has its reader "
+      "ended?");
   return exit_code == kExitOk ? kExitBadInput : exit_code;
 }
 
@@ -72,7 +76,8 @@ int run(int argc, char** argv) {
   app.footer(kExamples);
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpFormat>());
-  app.option_defaults()->disable_flag_override();  // --json=2 is a mistake; of --json=99999999999999999999 CLI11 makes an out_of_range
+  // --json=2 is a mistake; of --json=99999999999999999999 CLI11 makes an out_of_range
+  app.option_defaults()->disable_flag_override();
   int exit_code = kExitOk;
   for (const CommandEntry& command : kCommands) {
     command.add(app, exit_code);

@@ -18,7 +18,8 @@ bool takesScene(const CommandNode& command) {
 std::vector<std::string> wordsAfter(const CommandNode& command, std::span<const std::string> scenes) {
   std::vector<std::string> words;
   for (const CommandNode& below : command.commands) words.push_back(below.path.back());
-  for (const CommandOption& option : command.options) words.insert(words.end(), option.names.begin(), option.names.end());
+  for (const CommandOption& option : command.options)
+    words.insert(words.end(), option.names.begin(), option.names.end());
   for (const CommandOption& positional : command.positionals) {
     for (const std::string& choice : positional.choices()) words.push_back(choice);
   }
@@ -101,13 +102,15 @@ std::string fishCompletion(const CommandNode& root, std::span<const std::string>
       for (const std::string& name : option.names) {
         names += name.starts_with("--") ? fmt::format(" -l {}", name.substr(2)) : fmt::format(" -s {}", name.substr(1));
       }
-      const std::string value = option.type.empty()        ? ""
-                                : option.choices().empty() ? " -r"
-                                                           : fmt::format(" -x -a {}", fishText(joined(option.choices(), " ")));
+      const std::string value = option.type.empty() ? ""
+                                : option.choices().empty()
+                                    ? " -r"
+                                    : fmt::format(" -x -a {}", fishText(joined(option.choices(), " ")));
       text += fmt::format("{}{}{} -d {}\n", begin, names, value, fishText(option.description));
     }
     if (takesScene(*command)) {
-      text += fmt::format("{} -a {}\n", begin, fishText(joined(std::vector<std::string>(scenes.begin(), scenes.end()), " ")));
+      text += fmt::format("{} -a {}\n", begin,
+                          fishText(joined(std::vector<std::string>(scenes.begin(), scenes.end()), " ")));
     }
   }
   return text;

@@ -1,4 +1,5 @@
-// completion: what a shell offers after the words that were typed: commands, options, their choices, built-in scenes, files.
+// completion: what a shell offers after the words that were typed: commands,
+// options, their choices, built-in scenes, files.
 #pragma once
 #include <span>
 #include <string>

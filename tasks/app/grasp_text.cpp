@@ -22,8 +22,8 @@ std::vector<HeldBody> heldBodies(const Simulation& simulation) {
     const int body = static_cast<int>(i);
     if (!simulation.scene().bodies[i].dynamic) continue;
     if (grasp::graspContacts(simulation.model(), simulation.scratch(), body).empty()) continue;
-    held.push_back(
-        {simulation.scene().bodies[i].name, grasp::graspQuality(simulation.model(), simulation.state(), simulation.scratch(), body)});
+    held.push_back({simulation.scene().bodies[i].name,
+                    grasp::graspQuality(simulation.model(), simulation.state(), simulation.scratch(), body)});
   }
   return held;
 }
@@ -37,13 +37,14 @@ std::string wrenchText(const grasp::Vec6& w) {
   const bool turn = w.tail<3>().norm() > w.head<3>().norm();
   const Vec3 d = turn ? w.tail<3>().normalized() : w.head<3>().normalized();
   const bool mixed = std::min(w.tail<3>().norm(), w.head<3>().norm()) > 0.1;
-  return fmt::format("{}{} ({:.2f}, {:.2f}, {:.2f})", mixed ? "mostly " : "", turn ? "a turn about" : "a push along", d.x(), d.y(), d.z());
+  return fmt::format("{}{} ({:.2f}, {:.2f}, {:.2f})", mixed ? "mostly " : "", turn ? "a turn about" : "a push along",
+                     d.x(), d.y(), d.z());
 }
 
 std::string strengthText(const grasp::GraspQuality& q) {
   if (q.force_closure) {
-    return fmt::format("force closure; least resistance {:.4g} N per N of squeeze (epsilon), against {}; volume {:.3g}", q.epsilon,
-                       wrenchText(q.weakest_W), q.volume);
+    return fmt::format("force closure; least resistance {:.4g} N per N of squeeze (epsilon), against {}; volume {:.3g}",
+                       q.epsilon, wrenchText(q.weakest_W), q.volume);
   }
   if (q.rank < 6) return fmt::format("no force closure: nothing resists {}", wrenchText(q.weakest_W));
   return fmt::format("no force closure: no squeeze resists {}", wrenchText(q.weakest_W));
@@ -71,10 +72,11 @@ std::string distanceText(const Simulation& simulation) {
   std::string out;
   for (const grasp::FingerDistance& d : grasp::fingerDistances(simulation.model(), simulation.state())) {
     if (!simulation.scene().bodies[static_cast<std::size_t>(d.body)].dynamic || d.gap > kNearby) continue;
-    out += fmt::format("  {:<14} {:.4g} mm from {}, at ({:.4g}, {:.4g}, {:.4g}) mm of the world, ({:.4g}, {:.4g}) mm of the pad\n",
-                       simulation.scene().fingers[static_cast<std::size_t>(d.finger)].model.name, 1e3 * d.gap,
-                       simulation.scene().bodies[static_cast<std::size_t>(d.body)].name, 1e3 * d.p_body_W.x(), 1e3 * d.p_body_W.y(),
-                       1e3 * d.p_body_W.z(), 1e3 * d.place_L.x(), 1e3 * d.place_L.y());
+    out += fmt::format(
+        "  {:<14} {:.4g} mm from {}, at ({:.4g}, {:.4g}, {:.4g}) mm of the world, ({:.4g}, {:.4g}) mm of the pad\n",
+        simulation.scene().fingers[static_cast<std::size_t>(d.finger)].model.name, 1e3 * d.gap,
+        simulation.scene().bodies[static_cast<std::size_t>(d.body)].name, 1e3 * d.p_body_W.x(), 1e3 * d.p_body_W.y(),
+        1e3 * d.p_body_W.z(), 1e3 * d.place_L.x(), 1e3 * d.place_L.y());
   }
   return out.empty() ? out : "\nFingers near bodies that can move\n" + out;
 }
@@ -90,7 +92,8 @@ std::string graspText(const Simulation& simulation) {
     out += fmt::format("\nGrasp of {} (torques over {:.4g} mm)\n", body.name, 1e3 * q.rho);
     for (std::size_t i = 0; i < q.contacts.size(); ++i) {
       out += fmt::format("  {:<14} presses {:.4g} N, {:.1f} % of its friction left, internal force {:.4g} N\n",
-                         fingerName(simulation, q.contacts[i]), q.contacts[i].f_n, 100 * q.slip_margins[i], q.internal_f_W[i].norm());
+                         fingerName(simulation, q.contacts[i]), q.contacts[i].f_n, 100 * q.slip_margins[i],
+                         q.internal_f_W[i].norm());
     }
     out += fmt::format("  {}\n  {}\n  {}\n", strengthText(q), weightText(q), coneText(q));
   }
@@ -122,7 +125,11 @@ void writeGrasps(const Simulation& simulation, JsonWriter& json) {
     if (std::isfinite(q.least_squeeze)) json.key("least_squeeze").value(q.least_squeeze);
     json.key("contacts").beginArray();
     for (std::size_t i = 0; i < q.contacts.size(); ++i) {
-      json.beginObject().key("finger").value(fingerName(simulation, q.contacts[i])).key("normal_force").value(q.contacts[i].f_n);
+      json.beginObject()
+          .key("finger")
+          .value(fingerName(simulation, q.contacts[i]))
+          .key("normal_force")
+          .value(q.contacts[i].f_n);
       json.key("slip_margin").value(q.slip_margins[i]).key("internal_f_W").value(q.internal_f_W[i]).endObject();
     }
     json.endArray().key("resisted").beginArray();

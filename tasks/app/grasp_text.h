@@ -1,4 +1,5 @@
-// grasp_text: how well the fingers hold each body, at the end of a run (grasp/grasp_quality.h), for a person and for machines.
+// grasp_text: how well the fingers hold each body, at the end of a run
+// (grasp/grasp_quality.h), for a person and for machines.
 #pragma once
 #include <string>
 

@@ -24,12 +24,13 @@ std::string unknownCommand(const CLI::App& app, int argc, const char* const* arg
     const std::string_view word = argv[i];
     const std::vector<const CLI::App*> commands = at->get_subcommands([](const CLI::App*) { return true; });
     if (commands.empty() || word.starts_with('-')) return {};
-    const auto same = std::find_if(commands.begin(), commands.end(), [&](const CLI::App* command) { return command->get_name() == word; });
+    const auto same = std::find_if(commands.begin(), commands.end(),
+                                   [&](const CLI::App* command) { return command->get_name() == word; });
     if (same == commands.end()) {
       std::vector<std::string_view> names;
       for (const CLI::App* command : commands) names.push_back(command->get_name());
-      return fmt::format("\"{}\" isn't a command of {}.{} See `{} --help`.", printable(std::string(word)), path, suggestion(word, names),
-                         path);
+      return fmt::format("\"{}\" isn't a command of {}.{} See `{} --help`.", printable(std::string(word)), path,
+                         suggestion(word, names), path);
     }
     at = *same;
     path += fmt::format(" {}", word);

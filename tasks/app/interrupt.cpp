@@ -16,8 +16,8 @@ static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 
 constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP};
 
-// Signals that come so soon after the first are the same wish [ns]: `timeout` and shells signal a program and its group. Nobody presses a key
-// twice on purpose as fast.
+// Signals that come so soon after the first are the same wish [ns]: `timeout` and shells signal a program and its
+// group. Nobody presses a key twice on purpose as fast.
 constexpr std::int64_t kSameWish = 200'000'000;
 
 std::int64_t monotonicNow() {

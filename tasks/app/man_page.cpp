@@ -27,7 +27,8 @@ std::string roff(const std::string& text) {
 }
 
 std::string upper(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
 }
 
@@ -80,7 +81,8 @@ std::string manPageName(const CommandNode& command) { return joined(command.path
 std::string manPage(const CommandNode& command, const std::string& version) {
   const std::string name = joined(command.path, "-");
   std::string page = fmt::format(".TH {} 1 \"\" \"pincer {}\" \"pincer\"\n", roff(upper(name)), version);
-  page += fmt::format(".SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}", roff(name), roff(command.description), synopsis(command));
+  page +=
+      fmt::format(".SH NAME\n{} \\- {}\n.SH SYNOPSIS\n{}", roff(name), roff(command.description), synopsis(command));
   if (!command.positionals.empty() || !command.options.empty()) page += ".SH OPTIONS\n";
   for (const CommandOption& positional : command.positionals) page += entry(positional);
   for (const CommandOption& option : command.options) page += entry(option);

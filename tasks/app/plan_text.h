@@ -1,4 +1,5 @@
-// plan_text: what a model's plan is, in words: which bodies, pairs and fingers there are and in which specialised form each runs.
+// plan_text: what a model's plan is, in words: which bodies, pairs and fingers there are
+// and in which specialised form each runs.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
-// print: what the program says. Work never ends because nobody listens: a stream that can't be written (a full disk, a closed pipe) keeps that in
-// mind, and runApp() says so at the end.
+// print: what the program says. Work never ends because nobody listens: a stream that can't be written (a full disk, a
+// closed pipe) keeps that in mind, and runApp() says so at the end.
 #pragma once
 #include <fmt/format.h>
 

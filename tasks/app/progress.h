@@ -1,4 +1,5 @@
-// progress: how far a long run has come and how long it will still take, on standard error, only where that is a terminal.
+// progress: how far a long run has come and how long it will still take, on
+// standard error, only where that is a terminal.
 #pragma once
 #include <chrono>
 #include <cstdint>

@@ -57,7 +57,8 @@ std::string recordTable(const std::vector<Record>& records) {
   for (std::size_t i = 0; i < records.size(); ++i) {
     if (i > 0 && records[i].name == records[i - 1].name) rows[i + 1][0].clear();  // a name once, above its figures
   }
-  for (std::size_t i = 0; i < records.size(); ++i) out += line(rows[i + 1], widths) + (records[i].ok ? good("ok") : bad("FAIL")) + "\n";
+  for (std::size_t i = 0; i < records.size(); ++i)
+    out += line(rows[i + 1], widths) + (records[i].ok ? good("ok") : bad("FAIL")) + "\n";
   return out;
 }
 
@@ -65,8 +66,24 @@ std::string recordJson(const std::vector<Record>& records) {
   JsonWriter json;
   json.beginArray();
   for (const Record& r : records) {
-    json.beginObject().key("name").value(r.name).key("metric").value(r.metric).key("value").value(r.value).key("unit").value(r.unit);
-    json.key("relation").value(r.relation).key("bound").value(r.bound).key("ok").value(r.ok).key("seconds").value(r.seconds).endObject();
+    json.beginObject()
+        .key("name")
+        .value(r.name)
+        .key("metric")
+        .value(r.metric)
+        .key("value")
+        .value(r.value)
+        .key("unit")
+        .value(r.unit);
+    json.key("relation")
+        .value(r.relation)
+        .key("bound")
+        .value(r.bound)
+        .key("ok")
+        .value(r.ok)
+        .key("seconds")
+        .value(r.seconds)
+        .endObject();
   }
   return json.endArray().text();
 }

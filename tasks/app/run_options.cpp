@@ -13,8 +13,10 @@ namespace pincer::tasks {
 void addRunOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--out", options.out, "New directory for session and report (default: out/TASK-DATE-TIME)");
   command.add_flag_callback(
-      "--real-time", [&options] { options.servo.clock = ServoClock::kPaced; }, "At 1 kHz of the wall clock in place of as fast as it goes");
-  command.add_option("--sample-rate", options.sample_rate, "Of the 1000 ticks of a second, so many are kept [Hz]")->capture_default_str();
+      "--real-time", [&options] { options.servo.clock = ServoClock::kPaced; },
+      "At 1 kHz of the wall clock in place of as fast as it goes");
+  command.add_option("--sample-rate", options.sample_rate, "Of the 1000 ticks of a second, so many are kept [Hz]")
+      ->capture_default_str();
   command.add_flag("!--no-report", options.report, "Only the session and the table");
   command.add_flag("--json", options.json, "Print the table as JSON");
 }
@@ -26,7 +28,8 @@ std::uint64_t seedOf(const std::string& text) {
   std::uint64_t seed = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), seed);
   if (read.ec == std::errc{} && read.ptr == text.data() + text.size() && !text.empty()) return seed;
-  throw CLI::ValidationError("--seed", fmt::format("{} isn't a whole number in [0, 18446744073709551615]; take for example 1", text));
+  throw CLI::ValidationError(
+      "--seed", fmt::format("{} isn't a whole number in [0, 18446744073709551615]; take for example 1", text));
 }
 
 template <class Seed>
@@ -40,8 +43,11 @@ void addSeed(CLI::App& command, Seed& seed, const std::string& what, std::uint64
 
 }  // namespace
 
-void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& what) { addSeed(command, seed, what, seed); }
-void addSeedOption(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& what, std::uint64_t otherwise) {
+void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& what) {
+  addSeed(command, seed, what, seed);
+}
+void addSeedOption(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& what,
+                   std::uint64_t otherwise) {
   addSeed(command, seed, what, otherwise);
 }
 

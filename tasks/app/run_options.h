@@ -22,10 +22,12 @@ struct RunOptions {
 // Adds --out, --real-time, --sample-rate, --no-report and --json.
 void addRunOptions(CLI::App& command, RunOptions& options);
 
-// --seed: all 64 bits, in decimal digits; anything else is a usage error. Without it `seed` stays as it is; `what` says of what.
+// --seed: all 64 bits, in decimal digits; anything else is a usage error. Without it
+// `seed` stays as it is; `what` says of what.
 void addSeedOption(CLI::App& command, std::uint64_t& seed, const std::string& what);
 // Without it, nothing; `otherwise` is shown as the default.
-void addSeedOption(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& what, std::uint64_t otherwise);
+void addSeedOption(CLI::App& command, std::optional<std::uint64_t>& seed, const std::string& what,
+                   std::uint64_t otherwise);
 
 // The session's directory; the one asked for, or out/TASK-DATE-TIME.
 std::string outputDirectory(const RunOptions& options, const std::string& task);

@@ -37,7 +37,8 @@ std::string rangeOf(const JsonValue& schema) {
   const JsonValue* low = open ? open : schema.find("minimum");
   const JsonValue* high = schema.find("maximum");
   if (!low && !high) return "";
-  return fmt::format(" in {}{}, {}", !low || open ? "(" : "[", low ? literal(*low) : "-inf", high ? literal(*high) + "]" : "inf)");
+  return fmt::format(" in {}{}, {}", !low || open ? "(" : "[", low ? literal(*low) : "-inf",
+                     high ? literal(*high) + "]" : "inf)");
 }
 
 class Reference {
@@ -61,7 +62,8 @@ class Reference {
   static bool isChoiceOfObjects(const JsonValue& schema) {
     const JsonValue* choice = schema.find("oneOf");
     return choice && !schema.find("properties") &&
-           std::all_of(choice->array().begin(), choice->array().end(), [](const JsonValue& o) { return o.find("$ref"); });
+           std::all_of(choice->array().begin(), choice->array().end(),
+                       [](const JsonValue& o) { return o.find("$ref"); });
   }
   static bool hasSection(const JsonValue& def) { return def.find("properties") || isChoiceOfObjects(def); }
 
@@ -90,7 +92,8 @@ class Reference {
     std::string text;
     for (const JsonValue& option : choice->array()) {
       std::string keys;
-      for (const JsonValue& key : option.at("required").array()) keys += fmt::format("{}`{}`", keys.empty() ? "" : " and ", key.text());
+      for (const JsonValue& key : option.at("required").array())
+        keys += fmt::format("{}`{}`", keys.empty() ? "" : " and ", key.text());
       text += (text.empty() ? "" : ", or ") + keys;
     }
     return "Needs " + text + ", not both.\n\n";
@@ -103,13 +106,15 @@ class Reference {
     if (object && object->find("properties")) inner.emplace_back(title, object);
     const JsonValue* standard = property.find("default");
     return fmt::format("| `{}` | {} | {} | {} |\n", key, valueText(property, title),
-                       isRequired(owner, key) ? "needed" : (standard ? "`" + literal(*standard) + "`" : ""), meaning(property));
+                       isRequired(owner, key) ? "needed" : (standard ? "`" + literal(*standard) + "`" : ""),
+                       meaning(property));
   }
 
   static bool isRequired(const JsonValue& owner, const std::string& key) {
     const JsonValue* required = owner.find("required");
     if (!required) return false;
-    return std::any_of(required->array().begin(), required->array().end(), [&](const JsonValue& k) { return k.text() == key; });
+    return std::any_of(required->array().begin(), required->array().end(),
+                       [&](const JsonValue& k) { return k.text() == key; });
   }
 
   // A scalar definition's description is its unit; the property's own comes after it.
@@ -147,9 +152,11 @@ class Reference {
     if (type == "string") return schema.find("pattern") ? "letters, digits, - and _" : "text";
     if (type == "array") return listText(schema, title);
     const JsonValue* each = schema.find("additionalProperties");
-    if (type == "object" && each && each->kind() == JsonValue::Kind::kObject) return "object: to each name a " + valueText(*each, title);
+    if (type == "object" && each && each->kind() == JsonValue::Kind::kObject)
+      return "object: to each name a " + valueText(*each, title);
     if (type == "object")
-      return schema.find("properties") && title.empty() ? pairText(schema, title) : fmt::format("[object](#{})", anchor(title));
+      return schema.find("properties") && title.empty() ? pairText(schema, title)
+                                                        : fmt::format("[object](#{})", anchor(title));
     schema.reject("has a type that the reference doesn't know.");
   }
 
@@ -165,9 +172,11 @@ class Reference {
   std::string listText(const JsonValue& schema, const std::string& title) const {
     const JsonValue& items = schema.at("items");
     const JsonValue* most = schema.find("maxItems");
-    const std::string each = items.find("properties") ? fmt::format("[objects](#{})", anchor(title)) : valueText(items, title);
+    const std::string each =
+        items.find("properties") ? fmt::format("[objects](#{})", anchor(title)) : valueText(items, title);
     if (!most) return "list of " + each;
-    return literal(*most) == "3" ? fmt::format("[x, y, z], each {}", each) : fmt::format("list of {}: {}", literal(*most), each);
+    return literal(*most) == "3" ? fmt::format("[x, y, z], each {}", each)
+                                 : fmt::format("list of {}: {}", literal(*most), each);
   }
 
   std::string choiceText(const JsonValue& choice) const {

@@ -53,7 +53,10 @@ void writeExpectation(const Expectation& expected, const Outcome& outcome, JsonW
   } else {
     json.value(expected.time);
   }
-  json.key("relation").value(kRelationNames[static_cast<std::size_t>(expected.relation)]).key("value").value(expected.value);
+  json.key("relation")
+      .value(kRelationNames[static_cast<std::size_t>(expected.relation)])
+      .key("value")
+      .value(expected.value);
   json.key("tolerance").value(expected.tolerance);
   json.key("because").value(expected.because).key("reached").value(outcome.reached);
   if (outcome.reached) json.key("measured").value(outcome.measured).key("ok").value(outcome.holds());
@@ -62,7 +65,11 @@ void writeExpectation(const Expectation& expected, const Outcome& outcome, JsonW
 
 void writeTimes(const SimResult& result, JsonWriter& json) {
   json.key("tick_us").beginObject().key("median").value(1e6 * result.times.quantile(0.5));
-  json.key("p999").value(1e6 * result.times.quantile(0.999)).key("max").value(1e6 * result.times.quantile(1)).endObject();
+  json.key("p999")
+      .value(1e6 * result.times.quantile(0.999))
+      .key("max")
+      .value(1e6 * result.times.quantile(1))
+      .endObject();
 }
 
 void writeStatuses(const SimResult& result, JsonWriter& json) {
@@ -75,8 +82,17 @@ void writeStatuses(const SimResult& result, JsonWriter& json) {
 
 std::string simJson(const Simulation& simulation, const SimOptions& options, const SimResult& result) {
   JsonWriter json;
-  json.beginObject().key("scene").value(simulation.scene().file).key("description").value(simulation.scene().description);
-  json.key("time").value(simulation.time()).key("ticks").value(simulation.ticks()).key("interrupted").value(result.interrupted);
+  json.beginObject()
+      .key("scene")
+      .value(simulation.scene().file)
+      .key("description")
+      .value(simulation.scene().description);
+  json.key("time")
+      .value(simulation.time())
+      .key("ticks")
+      .value(simulation.ticks())
+      .key("interrupted")
+      .value(result.interrupted);
   if (options.timing) writeTimes(result, json);
   writeStatuses(result, json);
   json.key("state_hash").value(hashText(simulation.state().world));

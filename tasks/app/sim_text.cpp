@@ -12,7 +12,9 @@
 namespace pincer::tasks {
 namespace {
 
-std::string millimetres(const Vec3& p) { return fmt::format("{:11.6f} {:11.6f} {:11.6f}", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z()); }
+std::string millimetres(const Vec3& p) {
+  return fmt::format("{:11.6f} {:11.6f} {:11.6f}", 1e3 * p.x(), 1e3 * p.y(), 1e3 * p.z());
+}
 
 std::string expectationLine(const Expectation& expected, const Outcome& outcome) {
   const std::string verdict = !outcome.reached ? "  -  " : outcome.holds() ? good(" ok  ") : bad("FAILS");
@@ -30,15 +32,16 @@ void appendStates(const Simulation& simulation, std::string& out) {
     if (!body.dynamic) continue;
     const Pose X_WB = simulation.bodyPose(static_cast<int>(i));
     out += fmt::format("  {:<14} {}   turned {:.3g} rad, {:.3g} mm/s\n", body.name, millimetres(X_WB.p),
-                       angleBetween(simulation.scene().starts[i].X_WB.q, X_WB.q), 1e3 * moment.state.world.bodies[i].v_W.norm());
+                       angleBetween(simulation.scene().starts[i].X_WB.q, X_WB.q),
+                       1e3 * moment.state.world.bodies[i].v_W.norm());
   }
   for (std::size_t i = 0; i < simulation.scene().fingers.size(); ++i) {
     const grasp::FingerReport& felt = moment.fingers[i];
     const std::string contact = felt.touching ? fmt::format("presses {:.4g} N, friction {:.4g} N{}", felt.normal_force,
                                                             felt.tangential_force, felt.sliding ? ", slides" : "")
                                               : "touches nothing";
-    out +=
-        fmt::format("  {:<14} {}   {}\n", simulation.scene().fingers[i].model.name, millimetres(moment.state.world.points[i].p_W), contact);
+    out += fmt::format("  {:<14} {}   {}\n", simulation.scene().fingers[i].model.name,
+                       millimetres(moment.state.world.points[i].p_W), contact);
   }
 }
 
@@ -46,13 +49,15 @@ void appendRecorded(const Simulation& simulation, std::string& out) {
   const std::vector<Quantity>& quantities = simulation.scene().record.quantities;
   if (quantities.empty()) return;
   out += "\nRecorded, last values (all of them: --out FILE.csv)\n";
-  for (const Quantity& q : quantities) out += fmt::format("  {:<24} {:.10g} {}\n", q.name, q.measure(simulation.moment()), q.kind->unit);
+  for (const Quantity& q : quantities)
+    out += fmt::format("  {:<24} {:.10g} {}\n", q.name, q.measure(simulation.moment()), q.kind->unit);
 }
 
 void appendStatuses(const SimResult& result, std::string& out) {
   for (std::size_t i = 0; i < kStatusKinds.size(); ++i) {
     if (result.statuses.of(i) > 0)
-      out += fmt::format("\n{} in {} {}\n", bad("Note:"), counted(result.statuses.of(i), "tick"), kStatusKinds[i].sentence);
+      out += fmt::format("\n{} in {} {}\n", bad("Note:"), counted(result.statuses.of(i), "tick"),
+                         kStatusKinds[i].sentence);
   }
 }
 
@@ -61,7 +66,8 @@ void appendStatuses(const SimResult& result, std::string& out) {
 std::string expectationsText(const ExpectationLog& log) {
   if (log.expectations().empty()) return "";
   std::string out = "\nExpected\n";
-  for (std::size_t i = 0; i < log.expectations().size(); ++i) out += expectationLine(log.expectations()[i], log.outcomes()[i]);
+  for (std::size_t i = 0; i < log.expectations().size(); ++i)
+    out += expectationLine(log.expectations()[i], log.outcomes()[i]);
   return out;
 }
 
@@ -75,9 +81,9 @@ std::string simText(const Simulation& simulation, const SimOptions& options, con
   appendRecorded(simulation, out);
   out += expectationsText(result.log);
   appendStatuses(result, out);
-  out += fmt::format("\n{} of {:g} ms, each: median {:.2f} us, p99.9 {:.2f} us, longest {:.1f} us\n", counted(simulation.ticks(), "tick"),
-                     1e3 * scene.options.h, 1e6 * result.times.quantile(0.5), 1e6 * result.times.quantile(0.999),
-                     1e6 * result.times.quantile(1));
+  out += fmt::format("\n{} of {:g} ms, each: median {:.2f} us, p99.9 {:.2f} us, longest {:.1f} us\n",
+                     counted(simulation.ticks(), "tick"), 1e3 * scene.options.h, 1e6 * result.times.quantile(0.5),
+                     1e6 * result.times.quantile(0.999), 1e6 * result.times.quantile(1));
   out += fmt::format("State {} at {:g} s\n", hashText(simulation.state().world), simulation.time());
   if (result.interrupted) out += fmt::format("Interrupted at {:g} s of {:g} s.\n", simulation.time(), scene.duration);
   return out;

@@ -1,4 +1,5 @@
-// terminal_person: somebody who wears real devices and has the terminal: pages are printed, lines are keys: "1" and Enter, or Enter alone.
+// terminal_person: somebody who wears real devices and has the terminal: pages are printed, lines
+// are keys: "1" and Enter, or Enter alone.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -11,7 +12,8 @@ namespace pincer::tasks {
 
 class TerminalPerson {
  public:
-  TerminalPerson(const ServoOptions& servo, const std::atomic<bool>& interrupted) : servo_(servo), interrupted_(interrupted) {}
+  TerminalPerson(const ServoOptions& servo, const std::atomic<bool>& interrupted)
+      : servo_(servo), interrupted_(interrupted) {}
 
   AnswerBox& keys() { return keys_; }
   // Of a finger host:

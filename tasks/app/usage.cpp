@@ -39,7 +39,8 @@ CLI::Validator within(const NumberRule& rule) {
 CLI::Validator wholeWithin(std::int64_t low, std::int64_t high) {
   const auto problem = [low, high](std::string& text) -> std::string {
     std::int64_t value = 0;
-    if (!reads(text, value)) return fmt::format("\"{}\" isn't a whole number within [{}, {}]", printable(text), low, high);
+    if (!reads(text, value))
+      return fmt::format("\"{}\" isn't a whole number within [{}, {}]", printable(text), low, high);
     return value >= low && value <= high ? "" : fmt::format("{} is out of range [{}, {}]", text, low, high);
   };
   return CLI::Validator(problem, fmt::format("whole in [{}, {}]", low, high));

@@ -1,7 +1,8 @@
 // csv: one table as text, after RFC 4180 with "\n" line ends.
 //
-// Numbers are written with the fewest digits that read back to the same bits; NaN is `nan`. Text with a comma, quote or line end is quoted.
-// Text that a spreadsheet would take for a formula is kept from it (spreadsheetText); numbers stay numbers.
+// Numbers are written with the fewest digits that read back to the same bits; NaN is `nan`. Text with a comma,
+// quote or line end is quoted. Text that a spreadsheet would take for a formula is kept from it
+// (spreadsheetText); numbers stay numbers.
 #pragma once
 #include <fmt/format.h>
 
@@ -13,11 +14,13 @@
 
 namespace pincer::tasks {
 
-// `text` as a cell that a spreadsheet shows and doesn't run: one that begins with = + - @ a tab or a carriage return, and is no number, gets an
-// apostrophe before it, and so does one that begins with an apostrophe. Who takes off one leading apostrophe has the text back.
+// `text` as a cell that a spreadsheet shows and doesn't run: one that begins with = + - @ a tab or a carriage
+// return, and is no number, gets an apostrophe before it, and so does one that begins with an apostrophe. Who takes
+// off one leading apostrophe has the text back.
 std::string spreadsheetText(std::string_view text);
 
-// `text` without what ends a field or a line of gnuplot's tables, which know no quoted quotes: " becomes ', a control character a blank.
+// `text` without what ends a field or a line of gnuplot's tables, which know no quoted quotes:
+// " becomes ', a control character a blank.
 std::string plotText(std::string_view text);
 
 class CsvTable {
@@ -26,7 +29,8 @@ class CsvTable {
 
   CsvTable() = default;
   explicit CsvTable(Reader reader) : reader_(reader) {}
-  explicit CsvTable(std::initializer_list<std::string_view> columns, Reader reader = Reader::kAnyone) : reader_(reader) {
+  explicit CsvTable(std::initializer_list<std::string_view> columns, Reader reader = Reader::kAnyone)
+      : reader_(reader) {
     for (const std::string_view c : columns) add(c);
     endRow();
   }

@@ -1,6 +1,7 @@
 // expectation: what must be true of a scene, so that a scene is also a regression test.
 //
-//   ==  |measured - value| <= tolerance        <=  measured <= value + tolerance        >=  measured >= value - tolerance
+//   ==  |measured - value| <= tolerance        <=  measured <= value + tolerance
+//                                                  >=  measured >= value - tolerance
 //   hash  every bit of the state is as it was when the hash was taken (engine::hashOf)
 #pragma once
 #include <cstdint>
@@ -19,16 +20,18 @@ struct Expectation {
   Quantity quantity;
   Relation relation = Relation::kEqual;
   double value = 0;
-  double tolerance = 0;             // >= 0, in the quantity's unit
-  std::int64_t tick = kAlways;      // when it must hold
-  double time = 0;                  // the same as time [s]
-  std::string because;              // why it must be so; may be empty
-  std::optional<std::string> hash;  // of the state, 16 hexadecimal digits, in place of the quantity; empty: not taken yet
-  int hash_line = 0;                // in the file
+  double tolerance = 0;         // >= 0, in the quantity's unit
+  std::int64_t tick = kAlways;  // when it must hold
+  double time = 0;              // the same as time [s]
+  std::string because;          // why it must be so; may be empty
+  // of the state, 16 hexadecimal digits, in place of the quantity; empty: not taken yet
+  std::optional<std::string> hash;
+  int hash_line = 0;  // in the file
 
   static constexpr std::int64_t kAlways = -1;  // at the start and after every tick
 
-  // By how much `measured` misses [unit of the quantity]; not positive when it holds, infinite when `measured` is no number.
+  // By how much `measured` misses [unit of the quantity]; not positive when it
+  // holds, infinite when `measured` is no number.
   double excess(double measured) const;
 };
 

@@ -1,6 +1,8 @@
-// quantity: what a scene can record and expect, by name: "energy", "sphere.p_z", "left.normal_force", "hinge.position", "cube|left.f_x".
+// quantity: what a scene can record and expect, by name: "energy", "sphere.p_z",
+// "left.normal_force", "hinge.position", "cube|left.f_x".
 //
-// Every name, its unit and its meaning: docs/scenes.md. What a finger feels is that of the last tick; before the first tick it is zero.
+// Every name, its unit and its meaning: docs/scenes.md. What a finger feels is that of the
+// last tick; before the first tick it is zero.
 #pragma once
 #include <span>
 #include <string>

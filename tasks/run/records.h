@@ -43,19 +43,22 @@ struct SampleRecord {
 struct EventRecord {
   std::int64_t trial = 0;
   double time = 0;
-  std::string kind;    // "phase", "tone", "squeeze", "lift", "try_5mm", "slip", "drop", "failure", "success", "timeout", "gate_trip", ...
+  // "phase", "tone", "squeeze", "lift", "try_5mm", "slip", "drop", "failure", "success", "timeout", "gate_trip", ...
+  std::string kind;
   std::string detail;  // one line, may be empty
 };
 
-// Settings that a trial was given by whoever's hands did it, before its first tick: all that a tick depends on besides its inputs and the protocol.
+// Settings that a trial was given by whoever's hands did it, before its first tick: all that a tick
+// depends on besides its inputs and the protocol.
 struct HandsRecord {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   struct Finger {
-    std::array<double, 3> base_offset_W{};                   // of the arm's base from its place in the scene [m]
-    double base_turn = kNone;                                // about W's z axis [rad]; NaN: nobody said where the base stands
-    double peak_force = 0, continuous_force = 0;             // that the arm can bear [N]; 0: it doesn't tell
+    std::array<double, 3> base_offset_W{};        // of the arm's base from its place in the scene [m]
+    double base_turn = kNone;                     // about W's z axis [rad]; NaN: nobody said where the base stands
+    double peak_force = 0, continuous_force = 0;  // that the arm can bear [N]; 0: it doesn't tell
     std::array<double, 3> peak_torque{kNone, kNone, kNone};  // of its joints [N m]; NaN: it doesn't tell
-    double tip_mass = kNone, tip_damping = kNone;            // of the arm, as passivity took them [kg, N s/m]; NaN: it doesn't tell
+    // of the arm, as passivity took them [kg, N s/m]; NaN: it doesn't tell
+    double tip_mass = kNone, tip_damping = kNone;
   };
 
   std::int64_t trial = 0;
@@ -64,8 +67,8 @@ struct HandsRecord {
   std::int64_t passive = 0;      // 1: the fingers were kept passive (grasp/passivity)
 };
 
-// Samples of one finger's devices at one tick (devices/arm/arm.h), and what they were told. All bits are kept; what a device doesn't measure
-// is 0, with its flag unset.
+// Samples of one finger's devices at one tick (devices/arm/arm.h), and what they were told. All bits are kept; what a
+// device doesn't measure is 0, with its flag unset.
 struct FingerInputRecord {
   enum Flag : std::uint32_t {
     kValid = 1,
@@ -89,7 +92,8 @@ struct FingerInputRecord {
   std::array<double, 2> place_wanted_L{};  // that it asked of the tactor [m]
 };
 
-// A tick of a person's trial: everything that came in, and where it led, so that the trial can be done again and compared tick by tick.
+// A tick of a person's trial: everything that came in, and where it led, so that the trial can
+// be done again and compared tick by tick.
 struct InputRecord {
   enum Flag : std::uint32_t { kWantsLift = 1, kAnswers = 2 };
   static constexpr std::uint32_t kKeyShift =
@@ -123,7 +127,8 @@ struct ReadingRecord {
   std::string decision;
 };
 
-// One row per trial, written when it ends and durable before the next begins. What a task doesn't measure is 0, or NaN for a real number.
+// One row per trial, written when it ends and durable before the next begins. What a task
+// doesn't measure is 0, or NaN for a real number.
 struct TrialRecord {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -138,10 +143,10 @@ struct TrialRecord {
   double duration = 0;        // [s]
   // sphere pickup
   std::int64_t squeezes = 0, lifts = 0, tries_5mm = 0, slips = 0, drops = 0;
-  std::string cause;                            // of the last failed squeeze: "not lifted", "slipped", "squeezed out", "dropped"
-  double peak_grip = 0;                         // largest mean normal force of the two fingers [N]
-  double grip_ratio = 0;                        // grip while held / smallest grip m g / (2 mu) [-]; NaN if never held
-  double offset_at_squeeze = 0;                 // contact offset from the antipodal line at the last squeeze [m]; NaN if none
+  std::string cause;             // of the last failed squeeze: "not lifted", "slipped", "squeezed out", "dropped"
+  double peak_grip = 0;          // largest mean normal force of the two fingers [N]
+  double grip_ratio = 0;         // grip while held / smallest grip m g / (2 mu) [-]; NaN if never held
+  double offset_at_squeeze = 0;  // contact offset from the antipodal line at the last squeeze [m]; NaN if none
   double felt_grip = kNone, true_grip = kNone;  // when the last squeeze seemed firm enough [N]
   // cylinder alignment
   double start_angle = kNone;  // of the flat from its target [rad]
@@ -153,15 +158,16 @@ struct TrialRecord {
   double tick_us_median = 0, tick_us_p999 = 0;
 };
 
-// Somebody's answer in one trial of a psychophysical experiment, written when the trial ends and durable before the next begins.
+// Somebody's answer in one trial of a psychophysical experiment, written when the trial
+// ends and durable before the next begins.
 struct ResponseRecord {
   std::int64_t trial = 0;
   std::int64_t participant = 0;
-  std::string condition;      // of the experiment
-  std::int64_t run = 0;       // of the participant: one staircase, one list of trials
-  std::int64_t index = 0;     // place within the run
-  std::string stimulus;       // what was shown, where that has a name: "cone", "place 2"; else empty
-  double level = 0;           // what was shown, as a number, in SI units: angle, backlash, delay, place; NaN if it has none
+  std::string condition;   // of the experiment
+  std::int64_t run = 0;    // of the participant: one staircase, one list of trials
+  std::int64_t index = 0;  // place within the run
+  std::string stimulus;    // what was shown, where that has a name: "cone", "place 2"; else empty
+  double level = 0;  // what was shown, as a number, in SI units: angle, backlash, delay, place; NaN if it has none
   std::int64_t interval = 0;  // 1 or 2: the interval asked for; 0 where there is one only
   std::string answer;         // in words: "2", "cylinder", "0.0014"
   double answer_value = 0;    // the same as a number, or how sure of it (shapes) [-]; NaN if it has none
@@ -191,7 +197,8 @@ struct SessionInfo {
   std::uint64_t seed = 0;
   std::string version, build;  // of the program; compiler
   std::string scene_json, protocol_json, devices_json;
-  std::string participants_json, participants_hash;  // every parameter of simulated participants, frozen before the first trial
+  // every parameter of simulated participants, frozen before the first trial
+  std::string participants_json, participants_hash;
   // Everything else that bits may depend on (build_info.h); empty in sessions of before format 5.
   std::string commit{}, sources{}, flags{}, c_library{}, processor{};
 };

@@ -1,5 +1,5 @@
-// scene: a world, the fingers in it and what is expected to happen, as read from a JSON file and checked (format: docs/scenes.md,
-// docs/scene.schema.json). The same files serve tests, benchmarks, demonstrations and users.
+// scene: a world, the fingers in it and what is expected to happen, as read from a JSON file and checked (format:
+// docs/scenes.md, docs/scene.schema.json). The same files serve tests, benchmarks, demonstrations and users.
 #pragma once
 #include <cstdint>
 #include <optional>

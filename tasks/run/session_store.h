@@ -1,13 +1,16 @@
 // session_store: one SQLite file per session, safe against a kill at any moment.
 //
-//   tick --pushSample, pushInput--> rings --> writer thread --a transaction at least every 50 ms--> file (write-ahead log)
+//   tick --pushSample, pushInput--> rings --> writer thread --a transaction at
+//   least every 50 ms--> file (write-ahead log)
 //
-// A finished trial is committed and synchronised to the disk before finishTrial() returns; samples, inputs and events reach the file within 50 ms
-// and so survive a kill of the process (after a power cut the last ones may be missing). The column `state` of table `session` reads
-// "running" until close() writes "complete" or a failure "aborted: <why>"; a killed session therefore stays "running", and a reader says
-// so. A session appears whole, its tables made and its first row written; one program writes it at a time (session_lock.h), any number read.
+// A finished trial is committed and synchronised to the disk before finishTrial() returns; samples, inputs and events
+// reach the file within 50 ms and so survive a kill of the process (after a power cut the last ones may be missing).
+// The column `state` of table `session` reads "running" until close() writes "complete" or a failure "aborted: <why>";
+// a killed session therefore stays "running", and a reader says so. A session appears whole, its tables made and its
+// first row written; one program writes it at a time (session_lock.h), any number read.
 //
-// Errors: InputError with path, cause and remedy; std::bad_alloc. What fails in the writer thread is thrown by the next call and by close().
+// Errors: InputError with path, cause and remedy; std::bad_alloc. What fails in the writer thread
+// is thrown by the next call and by close().
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -34,15 +37,16 @@ class SessionWriter {
  public:
   // Makes a new file; refuses to overwrite one. Leaves nothing behind if it throws.
   static SessionWriter create(const std::string& path, const SessionInfo& info, const SessionOptions& options = {});
-  // Goes on with a session that was killed or aborted: its finished trials stay, what it holds of an unfinished one is removed. Refuses one that
-  // is complete, that another program writes, or that holds a trial twice. What is finished must be read after this, not before.
+  // Goes on with a session that was killed or aborted: its finished trials stay, what it holds of an unfinished one
+  // is removed. Refuses one that is complete, that another program writes, or that holds a trial twice. What is
+  // finished must be read after this, not before.
   static SessionWriter resume(const std::string& path, const SessionOptions& options = {});
   SessionWriter(SessionWriter&&) noexcept;
   SessionWriter& operator=(SessionWriter&&) = delete;
   ~SessionWriter();  // without close(): state "aborted: ..."
 
-  // From one thread, the tick's. Never throws; without block_when_full also never waits. False: the sample is lost, because the ring is
-  // full (counted) or the store has failed or is closed.
+  // From one thread, the tick's. Never throws; without block_when_full also never waits. False: the sample is lost,
+  // because the ring is full (counted) or the store has failed or is closed.
   bool pushSample(const SampleRecord& sample) noexcept;
   bool pushInput(const InputRecord& input) noexcept;  // likewise; a lost one shows as a gap in the ticks
   std::uint64_t droppedSamples() const noexcept;
@@ -50,12 +54,12 @@ class SessionWriter {
   // From one thread, outside of the real-time tick.
   void addEvent(const EventRecord& event);
   void addReading(const ReadingRecord& reading);
-  void addHands(const HandsRecord& hands);              // before the first input of its trial
-  void finishTrial(const TrialRecord& trial);           // returns once the trial and all that was pushed before are durable
+  void addHands(const HandsRecord& hands);     // before the first input of its trial
+  void finishTrial(const TrialRecord& trial);  // returns once the trial and all that was pushed before are durable
   void finishResponse(const ResponseRecord& response);  // likewise
   void addSurvey(const SurveyRecord& answer);           // likewise
-  void close();                                         // final flush, state "complete", one plain file without a log beside it
-  void abort(std::string_view why) noexcept;            // final flush, state "aborted: <why>"; needs no memory
+  void close();                               // final flush, state "complete", one plain file without a log beside it
+  void abort(std::string_view why) noexcept;  // final flush, state "aborted: <why>"; needs no memory
 
  private:
   class Impl;
@@ -76,7 +80,8 @@ class SessionReader {
   SessionReader& operator=(SessionReader&&) = delete;
   ~SessionReader();
 
-  // From now on reading ends with Interrupted (tasks/run/process/interrupted.h) once the flag is up, which must outlive this.
+  // From now on reading ends with Interrupted (tasks/run/process/interrupted.h) once
+  // the flag is up, which must outlive this.
   void heed(const std::atomic<bool>& interrupted);
 
   const std::string& path() const;
@@ -86,11 +91,12 @@ class SessionReader {
   std::int64_t samplesDropped() const { return progress_.samples_dropped; }
   const SessionProgress& progress() const { return progress_; }
   bool complete() const;
-  std::string warning() const;  // sentences for a person if the session isn't complete, lost samples or holds trials twice; else empty
+  // sentences for a person if the session isn't complete, lost samples or holds trials twice; else empty
+  std::string warning() const;
   std::string doubledTrials() const;  // the last of these; else empty
 
-  // A value that a column can't hold is an InputError with its place (cells.h), wherever records are read. Of trials that are there twice,
-  // the first.
+  // A value that a column can't hold is an InputError with its place (cells.h), wherever records are read.
+  // Of trials that are there twice, the first.
   std::vector<TrialRecord> trials() const;        // in order of time
   std::vector<ResponseRecord> responses() const;  // in order of time
   std::vector<EventRecord> events(std::optional<std::int64_t> trial = {}) const;

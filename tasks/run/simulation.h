@@ -16,8 +16,8 @@ class Simulation {
 
   // Fingers to where their trajectories are at the tick's end, then one step. Allocates nothing, throws nothing.
   engine::StepReport tick();
-  // The same with the fingers' devices where the caller says, one entry per finger, and pushes on bodies; where fingers are rendered by a
-  // published method (SceneFinger::method), these do nothing.
+  // The same with the fingers' devices where the caller says, one entry per finger, and pushes on bodies; where fingers
+  // are rendered by a published method (SceneFinger::method), these do nothing.
   engine::StepReport tick(std::span<const grasp::FingerInput> fingers, const engine::AppliedForces& applied = {});
   // What the fingers' trajectories say for the next tick.
   std::span<const grasp::FingerInput> nextFingers();
@@ -28,7 +28,7 @@ class Simulation {
   const grasp::GraspModel& model() const { return model_; }
   const grasp::GraspState& state() const { return state_; }
   grasp::GraspScratch& scratch() { return *scratch_; }
-  const grasp::GraspScratch& scratch() const { return *scratch_; }                              // as the last tick left it
+  const grasp::GraspScratch& scratch() const { return *scratch_; }  // as the last tick left it
   std::span<const grasp::FingerReport> fingers() const { return grasp::fingersOf(*scratch_); }  // of the last tick
   Moment moment() const { return {model_, state_, fingers(), scene_.starts, *scratch_, scene_.frames}; }
   Pose bodyPose(int body) const { return engine::bodyPose(model_.world, state_.world, body); }  // X_WB

@@ -42,7 +42,9 @@ void appendPlanes(std::string& bytes, const std::vector<Word>& words) {
   }
 }
 
-void appendFloat(std::string& bytes, float value) { appendPlanes(bytes, std::vector<std::uint32_t>{std::bit_cast<std::uint32_t>(value)}); }
+void appendFloat(std::string& bytes, float value) {
+  appendPlanes(bytes, std::vector<std::uint32_t>{std::bit_cast<std::uint32_t>(value)});
+}
 
 }  // namespace
 

@@ -33,7 +33,8 @@ CornerKey keyOf(const ViewVertex& v, const Vec3f& low, double steps_per_metre) {
 }  // namespace
 
 int MeshTable::add(const ViewMesh& mesh) {
-  const auto known = std::find_if(meshes_.begin(), meshes_.end(), [&](const ViewMesh& other) { return same(mesh, other); });
+  const auto known =
+      std::find_if(meshes_.begin(), meshes_.end(), [&](const ViewMesh& other) { return same(mesh, other); });
   const auto place = static_cast<int>(known - meshes_.begin());
   if (known == meshes_.end()) meshes_.push_back(mesh);
   return place;
@@ -49,7 +50,8 @@ PageMesh appendMesh(std::string& bytes, const ViewMesh& mesh) {
   std::vector<std::uint32_t> indices;
   for (const std::uint32_t corner : mesh.triangles) {
     const ViewVertex& v = mesh.vertices[corner];
-    const auto [at, is_new] = known.emplace(keyOf(v, box.min(), steps_per_metre), static_cast<std::uint32_t>(known.size()));
+    const auto [at, is_new] =
+        known.emplace(keyOf(v, box.min(), steps_per_metre), static_cast<std::uint32_t>(known.size()));
     indices.push_back(at->second);
     for (int i = 0; is_new && i < 3; ++i) {
       columns[static_cast<std::size_t>(i)].push_back(static_cast<double>(v.p[i]));

@@ -17,7 +17,8 @@ class MeshTable final : public MeshSink {
   std::vector<ViewMesh> meshes_;
 };
 
-// A mesh as a page has it: columns x, y, z of places [m] and of normals, then indices; corners that are the same to a column's step are one.
+// A mesh as a page has it: columns x, y, z of places [m] and of normals, then indices; corners that
+// are the same to a column's step are one.
 struct PageMesh {
   std::size_t vertices = 0, indices = 0;
 };

@@ -13,8 +13,8 @@ namespace {
 
 bool sameLook(const DrawItem& a, const DrawItem& b) {
   const Paint &p = a.paint, &q = b.paint;
-  return a.mesh == b.mesh && a.layer == b.layer && a.part == b.part && p.colour == q.colour && p.alpha == q.alpha && p.gloss == q.gloss &&
-         p.octants == q.octants && p.glow == q.glow && p.fade == q.fade;
+  return a.mesh == b.mesh && a.layer == b.layer && a.part == b.part && p.colour == q.colour && p.alpha == q.alpha &&
+         p.gloss == q.gloss && p.octants == q.octants && p.glow == q.glow && p.fade == q.fade;
 }
 
 void keepEverySecond(std::vector<double>& values) {
@@ -32,8 +32,8 @@ std::string captionOf(const TrialSnapshot& trial) {
 
 }  // namespace
 
-PageRecording::PageRecording(std::string title, const grasp::GraspModel& model, const Snapshot& start, MeshTable& meshes,
-                             const SceneCamera& camera)
+PageRecording::PageRecording(std::string title, const grasp::GraspModel& model, const Snapshot& start,
+                             MeshTable& meshes, const SceneCamera& camera)
     : title_(std::move(title)),
       drawing_(model, start, meshes),
       camera_(withGiven(camera, drawing_.camera(start))),
@@ -47,7 +47,9 @@ PageRecording::PageRecording(std::string title, const grasp::GraspModel& model, 
   }
 }
 
-PageChart& PageRecording::chart(const std::string& name, const std::string& unit) { return charts_.emplace_back(PageChart{name, unit}); }
+PageChart& PageRecording::chart(const std::string& name, const std::string& unit) {
+  return charts_.emplace_back(PageChart{name, unit});
+}
 
 void PageRecording::add(const Snapshot& snapshot) {
   times_.push_back(snapshot.time);
@@ -57,7 +59,8 @@ void PageRecording::add(const Snapshot& snapshot) {
 }
 
 std::size_t PageRecording::groupOf(const DrawItem& item) {
-  const auto known = std::find_if(groups_.begin(), groups_.end(), [&](const PageGroup& group) { return sameLook(group.look, item); });
+  const auto known =
+      std::find_if(groups_.begin(), groups_.end(), [&](const PageGroup& group) { return sameLook(group.look, item); });
   const auto place = static_cast<std::size_t>(known - groups_.begin());
   if (known == groups_.end()) groups_.push_back({item, {}});
   return place;
@@ -75,11 +78,13 @@ void PageRecording::addItems(const DrawList& list) {
     if (placed[group] == items.size()) {
       PlacedItem& fresh = items.emplace_back();
       for (int k = 0; k < 12; ++k) {
-        fresh[static_cast<std::size_t>(k)].assign(pictures - 1, k == 0 ? NAN : static_cast<double>(item.X_WM(k % 3, k / 3)));
+        fresh[static_cast<std::size_t>(k)].assign(pictures - 1,
+                                                  k == 0 ? NAN : static_cast<double>(item.X_WM(k % 3, k / 3)));
       }
     }
     PlacedItem& here = items[placed[group]++];
-    for (int k = 0; k < 12; ++k) here[static_cast<std::size_t>(k)].push_back(static_cast<double>(item.X_WM(k % 3, k / 3)));
+    for (int k = 0; k < 12; ++k)
+      here[static_cast<std::size_t>(k)].push_back(static_cast<double>(item.X_WM(k % 3, k / 3)));
   }
   for (std::size_t group = 0; group < groups_.size(); ++group) {
     for (std::size_t i = placed[group]; i < groups_[group].items.size(); ++i) {
@@ -120,7 +125,8 @@ void PageRecording::halve() {
   }
   for (PageChart& chart : charts_) keepEverySecond(chart.values);
   for (PagePad& pad : pads_) {
-    for (auto* column : {&pad.place_L[0], &pad.place_L[1], &pad.tactor_L[0], &pad.tactor_L[1], &pad.sliding}) keepEverySecond(*column);
+    for (auto* column : {&pad.place_L[0], &pad.place_L[1], &pad.tactor_L[0], &pad.tactor_L[1], &pad.sliding})
+      keepEverySecond(*column);
   }
   for (PageCaption& caption : captions_) {
     caption.picture = caption.picture + 1 == before ? times_.size() - 1 : (caption.picture + 1) / 2;

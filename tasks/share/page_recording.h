@@ -1,7 +1,8 @@
-// page_recording: a scene's run or a trial, picture by picture, as a page shows it: things drawn, fingerpads, charts, captions.
+// page_recording: a scene's run or a trial, picture by picture, as a page shows it:
+// things drawn, fingerpads, charts, captions.
 //
-// Things are those of the window (view/scene_drawing.h). Items that differ only in their place, and so in the matrix that takes their mesh to W,
-// are a group; the k-th of a group in one picture goes on as the k-th in the next.
+// Things are those of the window (view/scene_drawing.h). Items that differ only in their place, and so in the matrix
+// that takes their mesh to W, are a group; the k-th of a group in one picture goes on as the k-th in the next.
 #pragma once
 #include <array>
 #include <string>

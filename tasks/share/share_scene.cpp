@@ -20,13 +20,15 @@ std::int64_t ticksPerPicture(std::int64_t ticks, double h) {
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::min(by_rate, by_count) + 1e-9));
 }
 
-PageRecording recordScene(Simulation& simulation, const std::string& title, MeshTable& meshes, const std::atomic<bool>& interrupted,
+PageRecording recordScene(Simulation& simulation, const std::string& title, MeshTable& meshes,
+                          const std::atomic<bool>& interrupted,
                           const std::function<void(std::int64_t done)>& progress) {
   const Scene& scene = simulation.scene();
   const Snapshot start = snapshotNow(simulation, {});
   PageRecording recording(title, simulation.model(), start, meshes, simulation.scene().camera);
   const std::size_t first_chart = recording.charts().size();
-  for (const Quantity& quantity : scene.record.quantities) recording.chart(quantity.name, std::string(quantity.kind->unit));
+  for (const Quantity& quantity : scene.record.quantities)
+    recording.chart(quantity.name, std::string(quantity.kind->unit));
   const auto addPicture = [&](const Snapshot& snapshot) {
     recording.add(snapshot);
     for (std::size_t i = 0; i < scene.record.quantities.size(); ++i) {

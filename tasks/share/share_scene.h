@@ -16,8 +16,10 @@ constexpr double kPicturesAtLeast = 200;   // of something short, which is then 
 // Ticks from one picture to the next of a run of `ticks` ticks of `h` seconds.
 std::int64_t ticksPerPicture(std::int64_t ticks, double h);
 
-// Runs the simulation to the scene's end or until its state isn't finite. Throws Interrupted. `progress` gets the ticks done.
-PageRecording recordScene(Simulation& simulation, const std::string& title, MeshTable& meshes, const std::atomic<bool>& interrupted,
+// Runs the simulation to the scene's end or until its state isn't finite. Throws
+// Interrupted. `progress` gets the ticks done.
+PageRecording recordScene(Simulation& simulation, const std::string& title, MeshTable& meshes,
+                          const std::atomic<bool>& interrupted,
                           const std::function<void(std::int64_t done)>& progress = {});
 
 }  // namespace pincer::tasks

@@ -9,11 +9,13 @@ namespace pincer::tasks {
 namespace {
 
 // Every so many ticks a picture, and the last tick.
-PageRecording picturesOf(const std::string& title, const grasp::GraspModel& model, const History& history, MeshTable& meshes) {
+PageRecording picturesOf(const std::string& title, const grasp::GraspModel& model, const History& history,
+                         MeshTable& meshes) {
   PageRecording recording(title, model, history.at(0), meshes);
   const auto ticks = static_cast<std::int64_t>(history.size());
   const double seconds = history.at(history.size() - 1).time - history.at(0).time;
-  const std::int64_t stride = ticks > 1 && seconds > 0 ? ticksPerPicture(ticks, seconds / static_cast<double>(ticks - 1)) : 1;
+  const std::int64_t stride =
+      ticks > 1 && seconds > 0 ? ticksPerPicture(ticks, seconds / static_cast<double>(ticks - 1)) : 1;
   for (std::int64_t i = 0; i < ticks; ++i) {
     if (i % stride == 0 || i + 1 == ticks) recording.add(history.at(static_cast<std::size_t>(i)));
   }
@@ -28,7 +30,8 @@ void addHeight(PageRecording& recording, const grasp::GraspModel& model, const H
   if (object == bodies.size()) return;
   const double start = history.at(0).X_WB[object].p.z();
   PageChart& chart = recording.chart("height of the object", "mm");
-  for (const double time : recording.times()) chart.values.push_back(1e3 * (history.at(history.find(time)).X_WB[object].p.z() - start));
+  for (const double time : recording.times())
+    chart.values.push_back(1e3 * (history.at(history.find(time)).X_WB[object].p.z() - start));
 }
 
 }  // namespace
@@ -38,9 +41,11 @@ SharedSession recordSession(const SessionReader& session, const ReplayOptions& o
                             const std::function<void(std::int64_t done, std::int64_t total)>& progress) {
   SharedSession shared;
   const std::size_t trials = session.trials().size();
-  const auto keep = [&](std::int64_t trial, const std::string& of, const grasp::GraspModel& model, const TrialRecording& recorded) {
+  const auto keep = [&](std::int64_t trial, const std::string& of, const grasp::GraspModel& model,
+                        const TrialRecording& recorded) {
     if (recorded.history.size() == 0) return;  // interrupted before the first tick
-    shared.recordings.push_back(picturesOf(fmt::format("trial {}: {}", trial + 1, of), model, recorded.history, meshes));
+    shared.recordings.push_back(
+        picturesOf(fmt::format("trial {}: {}", trial + 1, of), model, recorded.history, meshes));
     shared.trials.push_back(trial);
     addHeight(shared.recordings.back(), model, recorded.history);
   };

@@ -1,4 +1,5 @@
-// share_session: trials of a session as recordings for a page. The session is replayed, compared to the bit as `pincer replay` does, and seen.
+// share_session: trials of a session as recordings for a page. The session is replayed, compared to
+// the bit as `pincer replay` does, and seen.
 #pragma once
 #include <atomic>
 #include <cstdint>

@@ -45,9 +45,17 @@ void writeGroup(JsonWriter& json, const PageGroup& group, int mesh) {
   const Paint& paint = group.look.paint;
   const Vec3 colour = paint.colour.cast<double>();
   json.beginObject().key("mesh").value(mesh).key("items").value(static_cast<std::int64_t>(group.items.size()));
-  json.key("layer").value(nameOf(group.look.layer)).key("part").value(nameOf(group.look.part)).key("colour").value(colour);
-  const std::pair<const char*, float> numbers[] = {
-      {"alpha", paint.alpha}, {"gloss", paint.gloss}, {"octants", paint.octants}, {"glow", paint.glow}, {"fade", paint.fade}};
+  json.key("layer")
+      .value(nameOf(group.look.layer))
+      .key("part")
+      .value(nameOf(group.look.part))
+      .key("colour")
+      .value(colour);
+  const std::pair<const char*, float> numbers[] = {{"alpha", paint.alpha},
+                                                   {"gloss", paint.gloss},
+                                                   {"octants", paint.octants},
+                                                   {"glow", paint.glow},
+                                                   {"fade", paint.fade}};
   for (const auto& [name, value] : numbers) json.key(name).value(static_cast<double>(value));
   json.endObject();
 }
@@ -75,14 +83,26 @@ void writeRecording(JsonWriter& json, std::string& bytes, const PageRecording& r
   }
   json.endArray().key("pads").beginArray();
   for (const PagePad& pad : recording.pads()) {
-    json.beginObject().key("finger").value(pad.finger).key("reach").value(pad.reach).key("display").value(pad.has_display).endObject();
+    json.beginObject()
+        .key("finger")
+        .value(pad.finger)
+        .key("reach")
+        .value(pad.reach)
+        .key("display")
+        .value(pad.has_display)
+        .endObject();
     for (const auto* column : {&pad.place_L[0], &pad.place_L[1], &pad.tactor_L[0], &pad.tactor_L[1], &pad.sliding}) {
       appendColumn(bytes, *column);
     }
   }
   json.endArray().key("captions").beginArray();
   for (const PageCaption& caption : recording.captions()) {
-    json.beginObject().key("picture").value(static_cast<std::int64_t>(caption.picture)).key("text").value(caption.text).endObject();
+    json.beginObject()
+        .key("picture")
+        .value(static_cast<std::int64_t>(caption.picture))
+        .key("text")
+        .value(caption.text)
+        .endObject();
   }
   json.endArray().endObject();
 }
@@ -101,7 +121,8 @@ void put(std::string& page, std::string_view mark, std::string_view text) {
 std::string filledIn(const WebPage& page, const PageData& data) {
   std::string html;
   for (const std::string_view piece : kPageShell.pieces) html += piece;
-  put(html, "{{pincer-data}}", packed(data.bytes));  // from the end on, so that no text that was put in is searched for marks
+  // from the end on, so that no text that was put in is searched for marks
+  put(html, "{{pincer-data}}", packed(data.bytes));
   put(html, "{{pincer-index}}", safeInScript(data.index));
   put(html, "{{pincer-title}}", escaped(page.title));
   return html;
@@ -119,13 +140,20 @@ bool canHalve(const WebPage& page) {
 }  // namespace
 
 void requirePageShell() {
-  if (kPageShell.missing) throw InputError(fmt::format("share: this pincer was built without its web page: {}", kPageShell.missing));
+  if (kPageShell.missing)
+    throw InputError(fmt::format("share: this pincer was built without its web page: {}", kPageShell.missing));
 }
 
 PageData dataOf(const WebPage& page, const MeshTable& meshes) {
   PageData data;
   JsonWriter json;
-  json.beginObject().key("version").value(kDataVersion).key("title").value(page.title).key("made_by").value(page.made_by);
+  json.beginObject()
+      .key("version")
+      .value(kDataVersion)
+      .key("title")
+      .value(page.title)
+      .key("made_by")
+      .value(page.made_by);
   json.key("notes").beginArray();
   for (const std::string& note : page.notes) json.value(note);
   json.endArray().key("meshes").beginArray();

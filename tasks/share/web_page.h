@@ -33,7 +33,8 @@ struct WebPage {
 constexpr std::size_t kLargestPage = 5'000'000;  // [bytes]: goes through by mail, and opens at once
 constexpr double kFewestPictures = 10;           // a second; with fewer, motion isn't seen as one
 
-// The page. If it is larger than `largest`, with every second picture, and so on, down to kFewestPictures; then as large as it is.
+// The page. If it is larger than `largest`, with every second picture, and so on, down to
+// kFewestPictures; then as large as it is.
 std::string htmlOf(WebPage& page, const MeshTable& meshes, std::size_t largest = kLargestPage);
 
 // The index and the data apart, as they stand in the page.

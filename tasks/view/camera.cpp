@@ -50,7 +50,8 @@ std::optional<Vec2> Camera::toPixel(const Vec3& p_W, int width, int height) cons
 Vec3 Camera::fromPixel(const Vec2& pixel, int width, int height, const Vec3& p_W) const {
   const CameraAxes axes = cameraAxes(*this);
   const double depth = (eye_W() - p_W).dot(axes.back), scale = 2 * depth * math::tan(opening / 2) / height;
-  return eye_W() - depth * axes.back + scale * ((pixel.x() - 0.5 * width) * axes.right + (0.5 * height - pixel.y()) * axes.up);
+  return eye_W() - depth * axes.back +
+         scale * ((pixel.x() - 0.5 * width) * axes.right + (0.5 * height - pixel.y()) * axes.up);
 }
 
 void Camera::turn(double right, double up) {

@@ -1,6 +1,7 @@
 // camera: looks at a point from a distance; turns about it.
 //
-//   p_WE = p_WT + d (cos(pitch) sin(yaw), -cos(pitch) cos(yaw), sin(pitch)),  yaw 0 looks along +y, away from the operator
+//   p_WE = p_WT + d (cos(pitch) sin(yaw), -cos(pitch) cos(yaw), sin(pitch)),  yaw
+//   0 looks along +y, away from the operator
 #pragma once
 #include <optional>
 

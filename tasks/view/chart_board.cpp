@@ -6,7 +6,16 @@
 namespace pincer::tasks {
 namespace {
 
-enum Charted : std::size_t { kGripForce, kBodyHeight, kTickTime, kBodySpeed, kBodyTurn, kBodyPlace, kBodyLoad, kFrictionUsed };
+enum Charted : std::size_t {
+  kGripForce,
+  kBodyHeight,
+  kTickTime,
+  kBodySpeed,
+  kBodyTurn,
+  kBodyPlace,
+  kBodyLoad,
+  kFrictionUsed
+};
 
 // `dead`: smaller values are round-off of what the engine computes, and nobody's concern.
 struct ChartedQuantity {
@@ -65,7 +74,8 @@ void ChartBoard::follow(int body, const std::string& name) {
   body_ = body;
   before_.reset();
   for (std::size_t i = 0; i < kQuantities; ++i) {
-    if (kCharted[i].of_body) makeChart(i, name, i == kBodyPlace ? std::vector<std::string>{"x", "y", "z"} : std::vector<std::string>{""});
+    if (kCharted[i].of_body)
+      makeChart(i, name, i == kBodyPlace ? std::vector<std::string>{"x", "y", "z"} : std::vector<std::string>{""});
   }
 }
 
@@ -90,7 +100,8 @@ std::vector<double> ChartBoard::valuesOf(std::size_t quantity, const Snapshot& s
       for (const FingerSnapshot& finger : snapshot.fingers) values.push_back(finger.normal_force);
       return values;
     case kFrictionUsed:
-      for (std::size_t i = 0; i < snapshot.fingers.size(); ++i) values.push_back(frictionUsed(snapshot, static_cast<int>(i)));
+      for (std::size_t i = 0; i < snapshot.fingers.size(); ++i)
+        values.push_back(frictionUsed(snapshot, static_cast<int>(i)));
       return values;
     case kBodyHeight:
       return {1e3 * offset_W(snapshot).z()};

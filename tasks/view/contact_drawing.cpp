@@ -29,17 +29,23 @@ std::vector<const ContactSnapshot*> contactsOfFinger(const Snapshot& snapshot, i
   return contacts;
 }
 
-void addPlace(const Snapshot& snapshot, const ContactSnapshot& contact, const ContactLook& look, double size, DrawList& list) {
+void addPlace(const Snapshot& snapshot, const ContactSnapshot& contact, const ContactLook& look, double size,
+              DrawList& list) {
   const Paint paint{.colour = gripColour(contact.sliding), .gloss = 0.5f, .glow = 0.35f};
   const auto several = contactsOfFinger(snapshot, contact.finger, -1).size();
   const bool is_one_of_several = contact.finger >= 0 && several > 1;
   const double share = shareOfFinger(snapshot, contact);
-  const double radius = 0.06 * size * (is_one_of_several ? std::clamp(std::sqrt(share * static_cast<double>(several)), 0.4, 1.4) : 1);
+  const double radius =
+      0.06 * size * (is_one_of_several ? std::clamp(std::sqrt(share * static_cast<double>(several)), 0.4, 1.4) : 1);
   const std::size_t first = list.size();
-  list.push_back({look.marks.ball, placed({Quat::Identity(), contact.p_W}, Vec3::Constant(radius)), paint, Layer::kMark});
-  addMarkArrow(look.marks, contact.p_W, 0.45 * size * contact.n_W, kThin * size, {.colour = kNormal, .glow = 0.7f}, list);
+  list.push_back(
+      {look.marks.ball, placed({Quat::Identity(), contact.p_W}, Vec3::Constant(radius)), paint, Layer::kMark});
+  addMarkArrow(look.marks, contact.p_W, 0.45 * size * contact.n_W, kThin * size, {.colour = kNormal, .glow = 0.7f},
+               list);
   for (std::size_t i = first; i < list.size(); ++i) list[i].part = Part::kContact;
-  const double patch = contact.finger < 0 ? 0 : snapshot.fingers[static_cast<std::size_t>(contact.finger)].patch_radius * std::sqrt(share);
+  const double patch = contact.finger < 0
+                           ? 0
+                           : snapshot.fingers[static_cast<std::size_t>(contact.finger)].patch_radius * std::sqrt(share);
   if (!(patch > 0)) return;
   const Vec3 flat(patch, patch, 0.004 * size);
   addMarked(list,
@@ -100,7 +106,8 @@ void addOutline(std::vector<const ContactSnapshot*> contacts, const ContactLook&
 double shareOfFinger(const Snapshot& snapshot, const ContactSnapshot& contact) {
   if (contact.finger < 0) return 1;
   double all = 0;
-  for (const ContactSnapshot* other : contactsOfFinger(snapshot, contact.finger, -1)) all += std::max(0.0, other->f_W.dot(other->n_W));
+  for (const ContactSnapshot* other : contactsOfFinger(snapshot, contact.finger, -1))
+    all += std::max(0.0, other->f_W.dot(other->n_W));
   return all > 0 ? std::max(0.0, contact.f_W.dot(contact.n_W)) / all : 1;
 }
 
@@ -128,7 +135,8 @@ std::vector<ViewLabel> contactLabels(const Snapshot& snapshot, const ContactLook
     if (newtons < 0.01 || (contact.finger < 0 && snapshot.contact_count > kMostLabels)) continue;
     std::string text = fmt::format("{:.2f} N", newtons);
     if (share < 1) text += fmt::format(", {:.0f} %", 100 * share);
-    labels.push_back({contact.p_W + (look.metres_per_newton + 0.12 * look.marks.size / newtons) * contact.f_W, text, contact.sliding});
+    labels.push_back({contact.p_W + (look.metres_per_newton + 0.12 * look.marks.size / newtons) * contact.f_W, text,
+                      contact.sliding});
   }
   return labels;
 }

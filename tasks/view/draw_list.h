@@ -11,15 +11,17 @@ using Vec3f = Eigen::Vector3f;
 using Mat4f = Eigen::Matrix4f;
 
 struct ViewVertex {
-  Vec3f p;                     // [m], frame of the mesh
-  Vec3f n;                     // unit
-  Vec3f edge = Vec3f::Ones();  // barycentric coordinates in the triangle whose edges are to be shown; ones: no edge is near
+  Vec3f p;  // [m], frame of the mesh
+  Vec3f n;  // unit
+  // barycentric coordinates in the triangle whose edges are to be shown; ones: no edge is near
+  Vec3f edge = Vec3f::Ones();
 };
 
 struct ViewMesh {
   std::vector<ViewVertex> vertices;
   std::vector<std::uint32_t> triangles;  // three vertices each, counter-clockwise seen from outside
-  bool closed = false;  // all around: no triangle is ever seen from behind, and those that are turned away needn't be drawn
+  // all around: no triangle is ever seen from behind, and those that are turned away needn't be drawn
+  bool closed = false;
 };
 
 struct Paint {
@@ -29,9 +31,9 @@ struct Paint {
   float edges = 0;                         // how strongly the triangles' edges show
   float octants = 0;                       // how strongly they differ by turns, so that a ball is seen to turn
   float glow = 0;                          // share of the colour that needs no light: marks, which stand for no thing
-  float fade = 0;                          // horizontal distance from the camera's target at which it has faded out [m]; 0: never
-  float grid = 0;                          // spacing of the lines along x and y of the mesh [m], each tenth stronger; 0: none
-  bool sheer = false;                      // of the surface only its lines, and the shadows on it, are seen
+  float fade = 0;      // horizontal distance from the camera's target at which it has faded out [m]; 0: never
+  float grid = 0;      // spacing of the lines along x and y of the mesh [m], each tenth stronger; 0: none
+  bool sheer = false;  // of the surface only its lines, and the shadows on it, are seen
 };
 
 enum class Layer : std::uint8_t {

@@ -12,7 +12,8 @@ namespace pincer::tasks {
 namespace {
 
 // A picture of one number per pixel, and the frame that draws to it.
-void makeTexture(unsigned& frame, unsigned& texture, GLint format, GLenum kind, GLenum attachment, int width, int height) {
+void makeTexture(unsigned& frame, unsigned& texture, GLint format, GLenum kind, GLenum attachment, int width,
+                 int height) {
   glGenTextures(1, &texture);
   glBindTexture(GL_TEXTURE_2D, texture);
   const GLenum parts = kind == GL_UNSIGNED_BYTE ? GL_RED : GL_DEPTH_COMPONENT;
@@ -31,7 +32,8 @@ void drawOverAll(const GlMesh& nothing) {
 
 }  // namespace
 
-GlOcclusion::GlOcclusion() : occlusion_(kSkyVertexShader, kOcclusionFragmentShader), blur_(kSkyVertexShader, kOcclusionBlurShader) {}
+GlOcclusion::GlOcclusion()
+    : occlusion_(kSkyVertexShader, kOcclusionFragmentShader), blur_(kSkyVertexShader, kOcclusionBlurShader) {}
 GlOcclusion::~GlOcclusion() { release(); }
 
 void GlOcclusion::release() {
@@ -111,7 +113,8 @@ std::vector<int> GlThings::draw(const DrawList& list, const Camera& camera, int 
   things.reserve(bytes.size() / 4);
   for (int y = height - 1; y >= 0; --y) {
     for (int x = 0; x < width; ++x) {
-      const std::size_t at = 4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
+      const std::size_t at =
+          4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
       things.push_back(bytes[at] + 256 * bytes[at + 1]);
     }
   }

@@ -16,7 +16,8 @@ class GlOcclusion {
   GlOcclusion(const GlOcclusion&) = delete;
   GlOcclusion& operator=(const GlOcclusion&) = delete;
 
-  // `reach`: how far away a thing still takes light [m]. `nothing` is any mesh. Leaves `picture` drawn to, and blending on.
+  // `reach`: how far away a thing still takes light [m]. `nothing` is any mesh.
+  // Leaves `picture` drawn to, and blending on.
   void darken(const GlPicture& picture, const Camera& camera, double reach, const GlMesh& nothing);
 
  private:

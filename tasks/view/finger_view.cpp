@@ -42,7 +42,11 @@ class PublishedFinger final : public ServoCycle {
 class FingerWindow final : public FingerStage {
  public:
   FingerWindow(bool mouse, const ViewOptions& view, const ServoOptions& servo, const std::atomic<bool>& interrupted)
-      : mouse_(mouse), view_(view), servo_(servo), interrupted_(interrupted), surface_(devices::openWindow({"pincer " + view.title})) {}
+      : mouse_(mouse),
+        view_(view),
+        servo_(servo),
+        interrupted_(interrupted),
+        surface_(devices::openWindow({"pincer " + view.title})) {}
 
   FingerHost host() override {
     FingerHost host;
@@ -55,7 +59,9 @@ class FingerWindow final : public FingerStage {
     }
     host.serve = [this](FingerTrial& trial, const TrialPlace& place) { return serve(trial, place); };
     host.show = [this](const StudyPage& page) { return showPage(*surface_, view_.title, page, interrupted_); };
-    host.ask = [this](const AskedQuestion& question) { return askOnPage(*surface_, view_.title, question, interrupted_); };
+    host.ask = [this](const AskedQuestion& question) {
+      return askOnPage(*surface_, view_.title, question, interrupted_);
+    };
     return host;
   }
   AnswerBox& keys() override { return keys_; }
@@ -113,10 +119,11 @@ void captureFinger(const FingerTrial& trial, const TrialPlace& place, bool blind
   if (shown.blind) snapshot.hidden_body = Snapshot::kAllBodies;
 }
 
-std::unique_ptr<FingerStage> fingerStageOf(const std::string& devices, const ViewOptions& view, const ServoOptions& servo,
-                                           const std::atomic<bool>& interrupted) {
+std::unique_ptr<FingerStage> fingerStageOf(const std::string& devices, const ViewOptions& view,
+                                           const ServoOptions& servo, const std::atomic<bool>& interrupted) {
   if (devices == "mouse" && !view.view)
-    throw InputError("run: --devices mouse moves the finger in the window that --view opens. Add --view, or leave --devices out.");
+    throw InputError(
+        "run: --devices mouse moves the finger in the window that --view opens. Add --view, or leave --devices out.");
   if (!view.view) return nullptr;
   return std::make_unique<FingerWindow>(devices == "mouse", view, servo, interrupted);
 }

@@ -71,7 +71,8 @@ Camera framed(const DrawList& list, const Camera& plain, const SceneCamera& give
   Camera camera = plain;
   camera.pitch = given.pitch.value_or(plain.pitch);
   camera.yaw = given.yaw ? *given.yaw : bestYaw(list, camera, renderer);
-  for (int i = 0; i < 2; ++i) fill(list, kNearest * plain.distance, renderer, camera);  // nearer, perspective moves the borders
+  // nearer, perspective moves the borders
+  for (int i = 0; i < 2; ++i) fill(list, kNearest * plain.distance, renderer, camera);
   return withGiven(given, camera);
 }
 

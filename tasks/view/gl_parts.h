@@ -1,4 +1,5 @@
-// gl_parts: what the renderer owns on the graphics card; each gives it back when it goes. Numbers are OpenGL's names of things.
+// gl_parts: what the renderer owns on the graphics card; each gives it back when it
+// goes. Numbers are OpenGL's names of things.
 #pragma once
 #include <map>
 #include <string>

@@ -17,8 +17,8 @@ struct Image {
 void writePng(const Image& image, const std::string& path);
 Image readPng(const std::string& path);
 
-// How much two pictures of the same size differ, in a way that doesn't mind how a driver draws the border of a thing: both are averaged over
-// blocks of `block` x `block` pixels first.
+// How much two pictures of the same size differ, in a way that doesn't mind how a driver draws the border of a thing:
+// both are averaged over blocks of `block` x `block` pixels first.
 struct ImageDifference {
   double mean = 0;   // of a block's channel, 0 .. 255
   double worst = 0;  // likewise

@@ -12,10 +12,13 @@ namespace {
 
 constexpr float kPadSide = 148;                        // of a fingerpad inset [pixels]
 constexpr float kChartWidth = 250, kChartHeight = 78;  // [pixels]
-constexpr ImU32 kSkinInk = IM_COL32(222, 170, 148, 255), kPadInk = IM_COL32(205, 130, 112, 255), kGridInk = IM_COL32(255, 255, 255, 60);
-constexpr ImU32 kWantedInk = IM_COL32(25, 60, 160, 255), kTactorInk = IM_COL32(20, 24, 30, 255), kParkedInk = IM_COL32(110, 110, 110, 255);
+constexpr ImU32 kSkinInk = IM_COL32(222, 170, 148, 255), kPadInk = IM_COL32(205, 130, 112, 255),
+                kGridInk = IM_COL32(255, 255, 255, 60);
+constexpr ImU32 kWantedInk = IM_COL32(25, 60, 160, 255), kTactorInk = IM_COL32(20, 24, 30, 255),
+                kParkedInk = IM_COL32(110, 110, 110, 255);
 constexpr ImU32 kTargetInk = IM_COL32(20, 140, 60, 255);
-constexpr std::array<ImU32, 3> kLineInks = {IM_COL32(95, 175, 255, 255), IM_COL32(255, 165, 70, 255), IM_COL32(120, 215, 130, 255)};
+constexpr std::array<ImU32, 3> kLineInks = {IM_COL32(95, 175, 255, 255), IM_COL32(255, 165, 70, 255),
+                                            IM_COL32(120, 215, 130, 255)};
 
 // The pad seen from outside, as one looks at one's own finger: distal up; L's first axis is distal, its second radial.
 ImVec2 onPad(const ImVec2& middle, double reach, const Vec2& place_L) {
@@ -43,7 +46,8 @@ void drawPad(const PadLook& pad, const FingerSnapshot& finger, const std::option
   ImGui::TextUnformatted(pad.finger.c_str());
   const std::string force = fmt::format("{:.2f} N", finger.normal_force);
   ImGui::SameLine(kPadSide - ImGui::CalcTextSize(force.c_str()).x + ImGui::GetStyle().WindowPadding.x);
-  ImGui::TextColored(finger.sliding ? ImVec4(1.0f, 0.45f, 0.35f, 1) : ImVec4(0.45f, 0.85f, 0.50f, 1), "%s", force.c_str());
+  ImGui::TextColored(finger.sliding ? ImVec4(1.0f, 0.45f, 0.35f, 1) : ImVec4(0.45f, 0.85f, 0.50f, 1), "%s",
+                     force.c_str());
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 middle(corner.x + 0.5f * kPadSide, corner.y + 0.5f * kPadSide);
   ImGui::Dummy({kPadSide, kPadSide});
@@ -117,8 +121,8 @@ void drawChart(const StripChart& chart, const Vec2& pointer) {
   if (cursor.under_pointer) {
     const float x = place(cursor.point->time, 0).x;
     list->AddLine({x, corner.y}, {x, corner.y + kChartHeight}, kGridInk, 1.5f);
-    list->AddText({std::min(x + 4, corner.x + kChartWidth - 50), corner.y + 0.4f * kChartHeight}, IM_COL32(255, 255, 255, 200),
-                  fmt::format("{:.2f} s", cursor.point->time).c_str());
+    list->AddText({std::min(x + 4, corner.x + kChartWidth - 50), corner.y + 0.4f * kChartHeight},
+                  IM_COL32(255, 255, 255, 200), fmt::format("{:.2f} s", cursor.point->time).c_str());
   }
   constexpr ImU32 kScaleInk = IM_COL32(255, 255, 255, 150);
   list->AddText({corner.x + 3, corner.y}, kScaleInk, fmt::format("{:g} {}", range.high, chart.unit()).c_str());
@@ -143,7 +147,8 @@ void drawCharts(const OverlayText& text, int width, int height) {
   if (text.charts.empty() || text.snapshot->trial.blind) return;
   const OverlayPanel panel("charts", 0, height, 0, 1);
   constexpr float kGap = 14;  // [pixels]
-  const auto in_a_row = static_cast<std::size_t>(std::max(1.0f, (static_cast<float>(width) - 40) / (kChartWidth + kGap)));
+  const auto in_a_row =
+      static_cast<std::size_t>(std::max(1.0f, (static_cast<float>(width) - 40) / (kChartWidth + kGap)));
   for (std::size_t i = 0; i < text.charts.size(); ++i) {
     if (i % in_a_row > 0) ImGui::SameLine(0, kGap);
     drawChart(*text.charts[i], text.pointer);

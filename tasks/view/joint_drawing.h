@@ -36,9 +36,12 @@ class JointDrawing {
 };
 
 // The pose of a mark that begins at a point and lies along a vector of any length but 0.
-inline Pose pointing(const Vec3& from_W, const Vec3& along_W) { return {Quat(frameFromNormal(along_W.normalized())), from_W}; }
+inline Pose pointing(const Vec3& from_W, const Vec3& along_W) {
+  return {Quat(frameFromNormal(along_W.normalized())), from_W};
+}
 
 // An arrow of marks' meshes.
-void addMarkArrow(const MarkMeshes& marks, const Vec3& from_W, const Vec3& along_W, double thickness, const Paint& paint, DrawList& list);
+void addMarkArrow(const MarkMeshes& marks, const Vec3& from_W, const Vec3& along_W, double thickness,
+                  const Paint& paint, DrawList& list);
 
 }  // namespace pincer::tasks

@@ -84,9 +84,12 @@ constexpr std::array kCameraGestures = {
     MouseGesture{"bar below, drag", "to another time"},
 };
 constexpr std::array kHandGestures = {
-    MouseGesture{"move", "fingers left, right, up, down"}, MouseGesture{"Shift, move", "fingers left, right, away, near"},
-    MouseGesture{"Control, move", "turn the hand"},        MouseGesture{"left button", "squeeze as long as it is held"},
-    MouseGesture{"wheel", "stronger or weaker grip"},      MouseGesture{"right button, drag", "turn the camera"},
+    MouseGesture{"move", "fingers left, right, up, down"},
+    MouseGesture{"Shift, move", "fingers left, right, away, near"},
+    MouseGesture{"Control, move", "turn the hand"},
+    MouseGesture{"left button", "squeeze as long as it is held"},
+    MouseGesture{"wheel", "stronger or weaker grip"},
+    MouseGesture{"right button, drag", "turn the camera"},
     MouseGesture{"Control, wheel", "nearer, further"},
 };
 

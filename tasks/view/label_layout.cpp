@@ -29,7 +29,8 @@ Vec2 placeOf(const LabelBox& label, const std::vector<Box>& taken, const Vec2& p
     for (int way = 0; way < kDirections; ++way) {  // first above, then alternately to both sides
       const int step = way % 2 == 0 ? -way / 2 : (way + 1) / 2;
       const double angle = 2 * std::numbers::pi * step / kDirections;
-      const Vec2 at = label.anchor + ring * Vec2(0.7 * label.size.x() * math::sin(angle), -1.1 * label.size.y() * math::cos(angle));
+      const Vec2 at =
+          label.anchor + ring * Vec2(0.7 * label.size.x() * math::sin(angle), -1.1 * label.size.y() * math::cos(angle));
       if (isFree(boxAt(at, label.size), taken, picture)) return at;
     }
   }

@@ -11,8 +11,9 @@ struct LabelBox {
   Vec2 size = Vec2::Zero();    // with its border [pixels]
 };
 
-// The middle of each label [pixels]: over its anchor, or at the nearest of the tried places around it where it lies inside a picture of this size
-// and over none that came before; over its anchor if there is none. The order of the labels decides, so a picture of the same labels is the same.
+// The middle of each label [pixels]: over its anchor, or at the nearest of the tried places around it where it lies
+// inside a picture of this size and over none that came before; over its anchor if there is none. The order of the
+// labels decides, so a picture of the same labels is the same.
 std::vector<Vec2> layOut(const std::vector<LabelBox>& labels, const Vec2& picture);
 
 }  // namespace pincer::tasks

@@ -41,7 +41,8 @@ Overlay::Overlay() : gui_(std::make_unique<Gui>()) {
   if (std::filesystem::exists(kFont)) io.Fonts->AddFontFromFileTTF(kFont, kFontSize);
   setOverlayStyle();
   if (!ImGui_ImplOpenGL3_Init("#version 330 core")) {
-    throw devices::DisplayError("Dear ImGui can't draw here: libGL.so.1 is missing. Install it: apt-get install libgl1.");
+    throw devices::DisplayError(
+        "Dear ImGui can't draw here: libGL.so.1 is missing. Install it: apt-get install libgl1.");
   }
 }
 
@@ -92,10 +93,11 @@ void Overlay::drawPanels(const OverlayText& text, int width, int height) {
 OverlayPanel::OverlayPanel(const char* name, double x, double y, double pivot_x, double pivot_y) {
   const auto inset = [](double pivot) { return static_cast<float>(1 - 2 * pivot) * kMargin; };
   const ImVec2 pivot(static_cast<float>(pivot_x), static_cast<float>(pivot_y));
-  ImGui::SetNextWindowPos({static_cast<float>(x) + inset(pivot_x), static_cast<float>(y) + inset(pivot_y)}, ImGuiCond_Always, pivot);
+  ImGui::SetNextWindowPos({static_cast<float>(x) + inset(pivot_x), static_cast<float>(y) + inset(pivot_y)},
+                          ImGuiCond_Always, pivot);
   ImGui::Begin(name, nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoNav |
-                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoInputs |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoSavedSettings);
 }
 OverlayPanel::~OverlayPanel() { ImGui::End(); }
 

@@ -17,7 +17,8 @@ class PageWindow {
   PageWindow(devices::Surface& surface, const std::string& title, std::function<void(const devices::InputEvent&)> hear)
       : start_(Snapshot::sizedFor(nothing_)),
         channel_(start_),
-        viewer_(surface, nothing_, start_, channel_, pace_, nullptr, {.title = title, .keys = false, .type = std::move(hear)}) {}
+        viewer_(surface, nothing_, start_, channel_, pace_, nullptr,
+                {.title = title, .keys = false, .type = std::move(hear)}) {}
 
   bool update(const StudyPage& page) {
     viewer_.showPage(page);
@@ -45,9 +46,11 @@ char typedCharacter(const devices::InputEvent& event) {
 
 }  // namespace
 
-bool showPage(devices::Surface& surface, const std::string& title, const StudyPage& page, const std::atomic<bool>& interrupted) {
+bool showPage(devices::Surface& surface, const std::string& title, const StudyPage& page,
+              const std::atomic<bool>& interrupted) {
   bool read = false;
-  PageWindow window(surface, title, [&](const devices::InputEvent& event) { read = read || event.code == devices::kKeyEnter; });
+  PageWindow window(surface, title,
+                    [&](const devices::InputEvent& event) { read = read || event.code == devices::kKeyEnter; });
   StudyPage shown = page;
   shown.lines.push_back("Enter: go on.   Esc: leave; what is done is kept.");
   while (!read && !interrupted) {
@@ -67,7 +70,8 @@ std::optional<std::string> askOnPage(devices::Surface& surface, const std::strin
     if (c != 0 && typed.size() < kMostTyped) typed += c;
   });
   while (!entered && !interrupted) {
-    StudyPage page{fmt::format("Question {} of {}", question.place, question.of), {question.text, question.hint + ".", "> " + typed + "_"}};
+    StudyPage page{fmt::format("Question {} of {}", question.place, question.of),
+                   {question.text, question.hint + ".", "> " + typed + "_"}};
     if (!question.problem.empty()) page.lines.push_back(question.problem);
     page.lines.push_back("Enter: that is my answer.   Esc: leave; what is done is kept.");
     if (!window.update(page)) return {};

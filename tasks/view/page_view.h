@@ -10,7 +10,8 @@
 namespace pincer::tasks {
 
 // Until Enter. False: the person has closed the window, or `interrupted`.
-bool showPage(devices::Surface& surface, const std::string& title, const StudyPage& page, const std::atomic<bool>& interrupted);
+bool showPage(devices::Surface& surface, const std::string& title, const StudyPage& page,
+              const std::atomic<bool>& interrupted);
 
 // Text typed until Enter: letters, digits and signs of a US keyboard. Absent: the person has left.
 std::optional<std::string> askOnPage(devices::Surface& surface, const std::string& title, const AskedQuestion& question,

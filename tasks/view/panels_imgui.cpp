@@ -9,13 +9,16 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr ImU32 kInk = IM_COL32(18, 22, 28, 255), kPaper = IM_COL32(255, 255, 255, 205), kSlipInk = IM_COL32(190, 30, 10, 255),
-                kLeaderInk = IM_COL32(18, 22, 28, 120), kPullInk = IM_COL32(25, 60, 160, 255);
+constexpr ImU32 kInk = IM_COL32(18, 22, 28, 255), kPaper = IM_COL32(255, 255, 255, 205),
+                kSlipInk = IM_COL32(190, 30, 10, 255), kLeaderInk = IM_COL32(18, 22, 28, 120),
+                kPullInk = IM_COL32(25, 60, 160, 255);
 const ImVec4 kGoodText(0.45f, 0.85f, 0.50f, 1), kBadText(1.0f, 0.45f, 0.35f, 1);
 
 void textLine(const std::string& text) { ImGui::TextUnformatted(text.c_str()); }
 void dimLine(const std::string& text) { ImGui::TextDisabled("%s", text.c_str()); }
-void colourLine(bool good, const std::string& text) { ImGui::TextColored(good ? kGoodText : kBadText, "%s", text.c_str()); }
+void colourLine(bool good, const std::string& text) {
+  ImGui::TextColored(good ? kGoodText : kBadText, "%s", text.c_str());
+}
 
 std::string statusWords(const Snapshot& snapshot) {
   if (snapshot.status & engine::kStateNotFinite) return "the state isn't finite: begin again";
@@ -76,7 +79,8 @@ void drawStatus(const OverlayText& text) {
   textLine(fmt::format("{:.3f} s", s.time));
   ImGui::SameLine();
   dimLine(fmt::format("{}", text.pace));
-  if (s.tick_seconds > 0 && !s.trial.blind) dimLine(fmt::format("tick {:.1f} us, {} contacts", 1e6 * s.tick_seconds, s.contact_count));
+  if (s.tick_seconds > 0 && !s.trial.blind)
+    dimLine(fmt::format("tick {:.1f} us, {} contacts", 1e6 * s.tick_seconds, s.contact_count));
   const std::string words = statusWords(s);
   if (!text.moment.empty()) dimLine(text.moment);
   if (!words.empty()) colourLine((s.status & ~std::uint32_t{0}) == 0, words);
@@ -111,7 +115,8 @@ void drawHealth(const OverlayText& text, int height) {
     if (!finger.has_device) continue;
     const std::string name = i < text.pads.size() ? text.pads[i].finger : fmt::format("finger {}", i);
     const bool good = finger.device == devices::DeviceState::kReady && finger.trip == devices::Trip::kNone;
-    colourLine(good, fmt::format("{}: {}{}", name, devices::nameOf(finger.device), finger.armed ? ", armed" : ", not armed"));
+    colourLine(good,
+               fmt::format("{}: {}{}", name, devices::nameOf(finger.device), finger.armed ? ", armed" : ", not armed"));
     if (finger.trip != devices::Trip::kNone) colourLine(false, devices::describe(finger.trip));
   }
 }

@@ -11,10 +11,10 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kSamples = 4;                                // per pixel, along borders
-constexpr int kShadowSide = 2048;                          // texels
-constexpr double kCornerReach = 0.12;                      // of what takes light from corners, in radii of what has shadows
-constexpr float kHiddenMarks = 0.5f;                       // share of a mark that shows through what hides it
+constexpr int kSamples = 4;            // per pixel, along borders
+constexpr int kShadowSide = 2048;      // texels
+constexpr double kCornerReach = 0.12;  // of what takes light from corners, in radii of what has shadows
+constexpr float kHiddenMarks = 0.5f;   // share of a mark that shows through what hides it
 const Vec3 kSun_W = Vec3(-0.45, -0.55, 1.1).normalized();  // towards the sun
 
 // Everything within `radius` of the centre, seen from the sun.
@@ -69,7 +69,8 @@ std::string Renderer::graphics() const { return reinterpret_cast<const char*>(gl
 
 bool Renderer::isSoftware() const {
   const std::string name = graphics();
-  return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos || name.find("swr") != std::string::npos;
+  return name.find("llvmpipe") != std::string::npos || name.find("softpipe") != std::string::npos ||
+         name.find("swr") != std::string::npos;
 }
 
 void Renderer::Gl::drawShadows(const DrawList& list, const RenderOptions& options) {
@@ -134,8 +135,11 @@ void Renderer::Gl::drawTransparent(const DrawList& list, const Vec3& eye_W) {
   for (const DrawItem& item : list) {
     if (!isOpaque(item) && item.layer != Layer::kGround) items.push_back(&item);
   }
-  const auto distance = [&](const DrawItem* item) { return (item->X_WM.topRightCorner<3, 1>() - eye_W.cast<float>()).norm(); };
-  std::stable_sort(items.begin(), items.end(), [&](const DrawItem* a, const DrawItem* b) { return distance(a) > distance(b); });
+  const auto distance = [&](const DrawItem* item) {
+    return (item->X_WM.topRightCorner<3, 1>() - eye_W.cast<float>()).norm();
+  };
+  std::stable_sort(items.begin(), items.end(),
+                   [&](const DrawItem* a, const DrawItem* b) { return distance(a) > distance(b); });
   glDepthMask(GL_FALSE);
   for (const DrawItem* item : items) drawItem(*item);
   glDepthMask(GL_TRUE);
@@ -198,7 +202,8 @@ void Renderer::show() {
   const GlPicture& picture = gl_->picture;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, picture.plain());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, picture.width(), picture.height(), 0, 0, picture.width(), picture.height(), GL_COLOR_BUFFER_BIT, GL_NEAREST);
+  glBlitFramebuffer(0, 0, picture.width(), picture.height(), 0, 0, picture.width(), picture.height(),
+                    GL_COLOR_BUFFER_BIT, GL_NEAREST);
   gl_->surface.present();
 }
 

@@ -10,7 +10,8 @@ void addArc(Profile& profile, double z, double r, double from, double to, int pa
   const double sign = inside ? -1 : 1;
   for (int i = 0; i <= parts; ++i) {
     const double a = from + (to - from) * i / parts;
-    profile.push_back({std::max(r * math::cos(a), 0.0), z + r * math::sin(a), sign * math::cos(a), sign * math::sin(a)});
+    profile.push_back(
+        {std::max(r * math::cos(a), 0.0), z + r * math::sin(a), sign * math::cos(a), sign * math::sin(a)});
   }
 }
 
@@ -20,7 +21,8 @@ ViewMesh revolve(const Profile& profile, int segments) {
   for (const ProfilePoint& at : profile) {
     for (int k = 0; k <= segments; ++k) {
       const double a = 2 * M_PI * k / segments, c = math::cos(a), s = math::sin(a);
-      mesh.vertices.push_back({Vec3(at.r * c, at.r * s, at.z).cast<float>(), Vec3(at.n_r * c, at.n_r * s, at.n_z).cast<float>()});
+      mesh.vertices.push_back(
+          {Vec3(at.r * c, at.r * s, at.z).cast<float>(), Vec3(at.n_r * c, at.n_r * s, at.n_z).cast<float>()});
     }
   }
   const auto columns = static_cast<std::uint32_t>(segments + 1);

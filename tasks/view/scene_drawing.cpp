@@ -17,14 +17,16 @@ const Vec3f kPorcelain(0.50f, 0.52f, 0.54f);
 const Vec3f kSelected(1.0f, 0.95f, 0.55f);
 const Vec3f kGoal(0.05f, 0.45f, 0.85f);
 const Vec3f kFloor(0.50f, 0.52f, 0.55f), kDevice(0.10f, 0.30f, 0.85f);
-const std::array<Vec3f, 6> kBodyColours = {Vec3f(0.90f, 0.42f, 0.06f), Vec3f(0.06f, 0.36f, 0.62f), Vec3f(0.30f, 0.55f, 0.16f),
-                                           Vec3f(0.55f, 0.16f, 0.42f), Vec3f(0.80f, 0.62f, 0.10f), Vec3f(0.10f, 0.50f, 0.52f)};
+const std::array<Vec3f, 6> kBodyColours = {Vec3f(0.90f, 0.42f, 0.06f), Vec3f(0.06f, 0.36f, 0.62f),
+                                           Vec3f(0.30f, 0.55f, 0.16f), Vec3f(0.55f, 0.16f, 0.42f),
+                                           Vec3f(0.80f, 0.62f, 0.10f), Vec3f(0.10f, 0.50f, 0.52f)};
 constexpr double kFingerBehind = 3.2;       // length of a finger behind its tip's centre, in radii
 constexpr double kPadAngle = 55 * kDegree;  // of the pad about its normal, that the display's tactor reaches
 constexpr double kGroundExtent = 12;        // radius of the drawn floor, in radii of what moves
-constexpr double kGridShare = 0.7;          // of the radius of what moves: the ground's lines are the next power of ten below as far apart
-constexpr double kLargestThing = 1;         // a larger body that doesn't move needn't be in the picture [m]
-constexpr double kLongestArrow = 2.2;       // in sizes of what moves
+// of the radius of what moves: the ground's lines are the next power of ten below as far apart
+constexpr double kGridShare = 0.7;
+constexpr double kLargestThing = 1;    // a larger body that doesn't move needn't be in the picture [m]
+constexpr double kLongestArrow = 2.2;  // in sizes of what moves
 
 bool isGround(const contact::Shape& shape) {
   return std::holds_alternative<contact::HalfSpace>(shape) || std::holds_alternative<contact::Dish>(shape);
@@ -73,7 +75,8 @@ SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start
       finger_(meshes.add(fingerMesh(kFingerBehind))),
       pad_(meshes.add(padMesh(kPadAngle))),
       nail_(meshes.add(nailMesh())) {
-  for (const grasp::FingerModel& finger : fingers_) tips_.push_back(finger.shape ? meshes.add(tipMesh(*finger.shape)) : -1);
+  for (const grasp::FingerModel& finger : fingers_)
+    tips_.push_back(finger.shape ? meshes.add(tipMesh(*finger.shape)) : -1);
   double smallest = kInfinity;
   for (const engine::BodyModel& body : model.world.bodies) {
     bodies_.push_back(bodyLook(model.world, body));
@@ -87,7 +90,8 @@ SceneDrawing::SceneDrawing(const grasp::GraspModel& model, const Snapshot& start
 
 SceneDrawing::BodyLook SceneDrawing::bodyLook(const engine::WorldModel& model, const engine::BodyModel& body) {
   const auto shapes = engine::collidersOf(model, body);
-  const bool is_ground = std::any_of(shapes.begin(), shapes.end(), [](const engine::ColliderModel& c) { return isGround(c.shape); });
+  const bool is_ground =
+      std::any_of(shapes.begin(), shapes.end(), [](const engine::ColliderModel& c) { return isGround(c.shape); });
   BodyLook look;
   look.dynamic = body.dynamic;
   look.moves = body.dynamic || body.driven;
@@ -104,7 +108,8 @@ SceneDrawing::ShapeLook SceneDrawing::shapeLook(const engine::ColliderModel& col
   look.is_mesh = std::holds_alternative<contact::Mesh>(collider.shape);
   look.layer = std::holds_alternative<contact::HalfSpace>(collider.shape) ? Layer::kGround : Layer::kSolid;
   const auto* dish = std::get_if<contact::Dish>(&collider.shape);
-  const double extent = dish ? std::min(0.55 * dish->radius, std::max(1.2 * reach, 0.3 * dish->radius)) : kGroundExtent * reach;
+  const double extent =
+      dish ? std::min(0.55 * dish->radius, std::max(1.2 * reach, 0.3 * dish->radius)) : kGroundExtent * reach;
   const ViewMesh mesh = shapeMesh(collider.shape, MeshLook::kSmooth, extent);
   for (const ViewVertex& vertex : mesh.vertices) look.box_S.extend(vertex.p.cast<double>());
   look.smooth = look.facets = meshes.add(mesh);
@@ -144,10 +149,11 @@ void SceneDrawing::addReferencePlane(const Snapshot& start, double lowest, doubl
   const double extent = kGroundExtent * reach;
   Vec3 place_W = (centre_W(start) / (10 * grid_)).array().round() * 10 * grid_;
   place_W.z() = lowest - 0.1 * reach;
-  reference_plane_ = DrawItem{meshes.add(shapeMesh(contact::HalfSpace{}, MeshLook::kSmooth, extent)),
-                              placed({Quat::Identity(), place_W}),
-                              {.fade = static_cast<float>(0.6 * extent), .grid = static_cast<float>(grid_), .sheer = true},
-                              Layer::kGround};
+  reference_plane_ =
+      DrawItem{meshes.add(shapeMesh(contact::HalfSpace{}, MeshLook::kSmooth, extent)),
+               placed({Quat::Identity(), place_W}),
+               {.fade = static_cast<float>(0.6 * extent), .grid = static_cast<float>(grid_), .sheer = true},
+               Layer::kGround};
 }
 
 DrawList SceneDrawing::compose(const Snapshot& snapshot, const ViewChoice& choice) const {
@@ -177,8 +183,10 @@ void SceneDrawing::addBodies(const Snapshot& snapshot, const ViewChoice& choice,
   for (const ShapeLook& look : shapes_) {
     const bool moves = bodies_[look.body].moves;
     if ((snapshot.trial.blind && moves) || isHidden(snapshot, look.body)) continue;
-    DrawItem item{choice.facets ? look.facets : look.smooth, placed(snapshot.X_WB[look.body] * look.X_BS), look.paint, look.layer};
-    if (choice.selected == static_cast<int>(look.body)) item.paint.colour = 0.55f * item.paint.colour + 0.45f * kSelected;
+    DrawItem item{choice.facets ? look.facets : look.smooth, placed(snapshot.X_WB[look.body] * look.X_BS), look.paint,
+                  look.layer};
+    if (choice.selected == static_cast<int>(look.body))
+      item.paint.colour = 0.55f * item.paint.colour + 0.45f * kSelected;
     if (bodies_[look.body].matters) item.thing = thingOfBody(look.body);
     if (look.is_mesh && choice.edges) item.paint.edges = choice.facets ? 0.7f : 0.3f;
     if (moves && choice.transparent) item.paint.alpha = 0.4f;
@@ -229,7 +237,8 @@ void SceneDrawing::addDropShadow(const Vec3& p_W, double radius, DrawList& list)
   list.push_back({ball_, placed({Quat::Identity(), below_W}, Vec3(radius, radius, 2e-4)), paint, Layer::kMark});
   const double thin = 0.008 * size_;
   if (p_W.z() > below_W.z())
-    list.push_back({rod_, placed({Quat::Identity(), below_W}, Vec3(thin, thin, p_W.z() - below_W.z())), paint, Layer::kMark});
+    list.push_back(
+        {rod_, placed({Quat::Identity(), below_W}, Vec3(thin, thin, p_W.z() - below_W.z())), paint, Layer::kMark});
 }
 
 // A ring at the height that the object's middle is to reach; a line along the heading that its mark is to take.
@@ -240,14 +249,15 @@ void SceneDrawing::addGoal(const Snapshot& snapshot, DrawList& list) const {
   const Paint paint{.colour = kGoal, .glow = 0.8f};
   const double thin = 0.02 * size_;
   const auto line = [&](const Vec3& from_W, const Vec3& to_W) {
-    list.push_back({rod_, placed(pointing(from_W, to_W - from_W), Vec3(thin, thin, (to_W - from_W).norm())), paint, Layer::kMark});
+    list.push_back(
+        {rod_, placed(pointing(from_W, to_W - from_W), Vec3(thin, thin, (to_W - from_W).norm())), paint, Layer::kMark});
   };
   if (snapshot.trial.goal_height) {
     constexpr int kSides = 32;
     const auto corner = [&](int k) {
       const double a = 2 * std::numbers::pi * k / kSides;
-      return Vec3(middle_W.x() + 1.6 * object->radius * math::cos(a), middle_W.y() + 1.6 * object->radius * math::sin(a),
-                  *snapshot.trial.goal_height);
+      return Vec3(middle_W.x() + 1.6 * object->radius * math::cos(a),
+                  middle_W.y() + 1.6 * object->radius * math::sin(a), *snapshot.trial.goal_height);
     };
     for (int k = 0; k < kSides; ++k) line(corner(k), corner(k + 1));
   }
@@ -258,11 +268,14 @@ void SceneDrawing::addGoal(const Snapshot& snapshot, DrawList& list) const {
   }
 }
 
-ContactLook SceneDrawing::contactLook(const Snapshot& snapshot) const { return {marks(), cone_, metresPerNewton(snapshot)}; }
+ContactLook SceneDrawing::contactLook(const Snapshot& snapshot) const {
+  return {marks(), cone_, metresPerNewton(snapshot)};
+}
 
 double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {
   double largest = 0;
-  for (int i = 0; i < snapshot.contact_count; ++i) largest = std::max(largest, snapshot.contacts[static_cast<std::size_t>(i)].f_W.norm());
+  for (int i = 0; i < snapshot.contact_count; ++i)
+    largest = std::max(largest, snapshot.contacts[static_cast<std::size_t>(i)].f_W.norm());
   double scale = 0.8 * size_;  // for some newtons; ten times as large ones are drawn at a tenth, in steps of about two
   for (int i = 0; scale * largest > kLongestArrow * size_; ++i) scale *= i % 3 == 1 ? 0.4 : 0.5;
   return scale;
@@ -289,7 +302,8 @@ double SceneDrawing::radius(const Snapshot& snapshot) const {
     radius = std::max(radius, (snapshot.fingers[i].p_WP - centre).norm() + 2 * fingers_[i].radius);
   }
   for (std::size_t i = 0; i < snapshot.X_WB.size(); ++i) {
-    if (bodies_[i].matters) radius = std::max(radius, (snapshot.X_WB[i] * bodies_[i].p_BC - centre).norm() + bodies_[i].radius);
+    if (bodies_[i].matters)
+      radius = std::max(radius, (snapshot.X_WB[i] * bodies_[i].p_BC - centre).norm() + bodies_[i].radius);
   }
   return radius;
 }

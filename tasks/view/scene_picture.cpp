@@ -7,11 +7,13 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kLeastSide = 16, kMostSide = 8192;  // [pixels]; the upper one is what OpenGL 3.3 promises of textures on any driver of today
+// [pixels]; the upper one is what OpenGL 3.3 promises of textures on any driver of today
+constexpr int kLeastSide = 16, kMostSide = 8192;
 
 void checkSide(const char* name, int pixels) {
   if (pixels >= kLeastSide && pixels <= kMostSide) return;
-  throw InputError(fmt::format("picture: {} = {} is out of range [{}, {}] pixels.", name, pixels, kLeastSide, kMostSide));
+  throw InputError(
+      fmt::format("picture: {} = {} is out of range [{}, {}] pixels.", name, pixels, kLeastSide, kMostSide));
 }
 
 void set(const char* name, const std::optional<double>& said, double least, double most, double& value) {
@@ -43,7 +45,8 @@ ScenePicture::ScenePicture(const grasp::GraspModel& model, const grasp::GraspSta
   painter_.emplace(*surface_, model_, snapshot_);
 }
 
-Image ScenePicture::draw(const grasp::GraspState& state, const grasp::GraspScratch* scratch, const CameraChoice& camera, bool forces) {
+Image ScenePicture::draw(const grasp::GraspState& state, const grasp::GraspScratch* scratch, const CameraChoice& camera,
+                         bool forces) {
   surface_->makeCurrent();
   captureGrasp(model_, state, scratch ? *scratch : std::as_const(*untouched_), {}, snapshot_);
   ViewChoice choice;

@@ -15,14 +15,16 @@ struct CameraChoice {
   std::optional<double> distance, yaw, pitch;  // camera.h
 };
 
-// One thread makes and uses it. Throws devices::DisplayError where there is no OpenGL, InputError for a size or camera out of range.
+// One thread makes and uses it. Throws devices::DisplayError where there is no OpenGL,
+// InputError for a size or camera out of range.
 class ScenePicture {
  public:
   // `model` must outlive it. Looks from where `start` is seen whole. Sides of 16 .. 8192 pixels.
   ScenePicture(const grasp::GraspModel& model, const grasp::GraspState& start, int width, int height);
 
   // `scratch`: of the state's last step, for forces and contacts; null: none are drawn.
-  Image draw(const grasp::GraspState& state, const grasp::GraspScratch* scratch, const CameraChoice& camera, bool forces);
+  Image draw(const grasp::GraspState& state, const grasp::GraspScratch* scratch, const CameraChoice& camera,
+             bool forces);
 
  private:
   const grasp::GraspModel& model_;

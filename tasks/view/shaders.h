@@ -3,8 +3,8 @@
 
 namespace pincer::tasks {
 
-// Light in the shader: radiance L = albedo (sun max(n.s, 0) shadow + mix(ground, sky, (1 + n.z)/2)) + highlights; then an S-shaped curve so that
-// bright places keep their colour, and sRGB's gamma.
+// Light in the shader: radiance L = albedo (sun max(n.s, 0) shadow + mix(ground, sky, (1 + n.z)/2)) + highlights; then
+// an S-shaped curve so that bright places keep their colour, and sRGB's gamma.
 inline constexpr const char* kSolidVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 p_M;
 layout(location = 1) in vec3 n_M;
@@ -29,8 +29,8 @@ void main() {
 }
 )";
 
-// Behind the version and three words that are 0 or 1: SOFT half shadows, GRID lines, SHEER nothing but lines and shadows. Programs of their own, as
-// without a graphics card a branch that isn't taken costs as much as one that is.
+// Behind the version and three words that are 0 or 1: SOFT half shadows, GRID lines, SHEER nothing but lines and
+// shadows. Programs of their own, as without a graphics card a branch that isn't taken costs as much as one that is.
 inline constexpr const char* kSolidFragmentShader = R"(
 in vec3 p_W;
 in vec3 n_W;

@@ -1,9 +1,11 @@
-// shaders_occlusion: the programs that darken corners and the surroundings of contacts by the depths in the picture, GLSL 3.30.
+// shaders_occlusion: the programs that darken corners and the surroundings of contacts
+// by the depths in the picture, GLSL 3.30.
 //
-//   share of the sky that a place sees = 1 - mean over taps t of max(0, n.d_t - bias) / (|d_t|^2 + small),   d_t = (p_t - p) / reach
+//   share of the sky that a place sees = 1 - mean over taps t of max(0, n.d_t - bias) /
+//   (|d_t|^2 + small),   d_t = (p_t - p) / reach
 //
-// Source: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, The Alchemy screen-space ambient obscurance algorithm, HPG 2011. Places are in the
-// camera's frame.
+// Source: M. McGuire, B. Osman, M. Bukowski, P. Hennessy, The Alchemy screen-space ambient obscurance algorithm,
+// HPG 2011. Places are in the camera's frame.
 #pragma once
 
 namespace pincer::tasks {

@@ -10,7 +10,8 @@ namespace pincer::tasks {
 namespace {
 
 std::string solidShader(bool soft, bool grid, bool sheer) {
-  return fmt::format("#version 330 core\n#define SOFT {:d}\n#define GRID {:d}\n#define SHEER {:d}\n", soft, grid, sheer) +
+  return fmt::format("#version 330 core\n#define SOFT {:d}\n#define GRID {:d}\n#define SHEER {:d}\n", soft, grid,
+                     sheer) +
          kSolidFragmentShader;
 }
 

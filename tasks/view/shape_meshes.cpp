@@ -25,8 +25,9 @@ void addViewTriangle(ViewMesh& mesh, const std::array<ViewVertex, 3>& corners) {
 // A flat triangle all of whose edges show.
 void addFacet(ViewMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3f n = (b - a).cross(c - a).normalized().cast<float>();
-  addViewTriangle(mesh,
-                  {{{a.cast<float>(), n, Vec3f::UnitX()}, {b.cast<float>(), n, Vec3f::UnitY()}, {c.cast<float>(), n, Vec3f::UnitZ()}}});
+  addViewTriangle(mesh, {{{a.cast<float>(), n, Vec3f::UnitX()},
+                          {b.cast<float>(), n, Vec3f::UnitY()},
+                          {c.cast<float>(), n, Vec3f::UnitZ()}}});
 }
 
 // A flat polygon, of which no edge shows.
@@ -84,12 +85,17 @@ ViewMesh meshOf(const contact::CylinderWithFlat& c) {
     top.emplace_back(c.radius * math::cos(a), c.radius * math::sin(a), c.half_length);
     bottom.emplace_back(top.back() - 2 * c.half_length * Vec3::UnitZ());
   }
-  const auto normal = [&](std::size_t i) { return Vec3f(Vec3(top[i].x() / c.radius, top[i].y() / c.radius, 0).cast<float>()); };
+  const auto normal = [&](std::size_t i) {
+    return Vec3f(Vec3(top[i].x() / c.radius, top[i].y() / c.radius, 0).cast<float>());
+  };
   for (std::size_t i = 0; i + 1 < top.size(); ++i) {
     const std::size_t j = i + 1;
-    addViewTriangle(mesh,
-                    {{{top[i].cast<float>(), normal(i)}, {bottom[i].cast<float>(), normal(i)}, {bottom[j].cast<float>(), normal(j)}}});
-    addViewTriangle(mesh, {{{top[i].cast<float>(), normal(i)}, {bottom[j].cast<float>(), normal(j)}, {top[j].cast<float>(), normal(j)}}});
+    addViewTriangle(mesh, {{{top[i].cast<float>(), normal(i)},
+                            {bottom[i].cast<float>(), normal(i)},
+                            {bottom[j].cast<float>(), normal(j)}}});
+    addViewTriangle(
+        mesh,
+        {{{top[i].cast<float>(), normal(i)}, {bottom[j].cast<float>(), normal(j)}, {top[j].cast<float>(), normal(j)}}});
   }
   addFace(mesh, std::array{top.back(), bottom.back(), bottom.front(), top.front()}, Vec3::UnitX());
   addFace(mesh, top, Vec3::UnitZ());
@@ -102,7 +108,8 @@ ViewMesh meshOf(const contact::Convex& convex) {
   ViewMesh mesh;
   for (const auto& face : convex.hull->faces()) {
     std::vector<Vec3> corners;
-    for (const int vertex : convex.hull->cornersOf(face)) corners.push_back(convex.hull->vertices()[static_cast<std::size_t>(vertex)]);
+    for (const int vertex : convex.hull->cornersOf(face))
+      corners.push_back(convex.hull->vertices()[static_cast<std::size_t>(vertex)]);
     addFace(mesh, corners, face.n);
   }
   return mesh;
@@ -140,14 +147,18 @@ void addPatch(ViewMesh& mesh, const contact::Patch& patch, int parts) {
     for (int j = 0; j <= parts - i; ++j) {
       const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
       const contact::PatchPoint at = contact::evaluate(patch, u, v);
-      mesh.vertices.push_back({at.S.cast<float>(), at.N.normalized().cast<float>(), Vec3(1 - u - v, u, v).cast<float>()});
+      mesh.vertices.push_back(
+          {at.S.cast<float>(), at.N.normalized().cast<float>(), Vec3(1 - u - v, u, v).cast<float>()});
     }
   }
-  const auto place = [&](int i, int j) { return first + static_cast<std::uint32_t>(i * (parts + 1) - i * (i - 1) / 2 + j); };
+  const auto place = [&](int i, int j) {
+    return first + static_cast<std::uint32_t>(i * (parts + 1) - i * (i - 1) / 2 + j);
+  };
   for (int i = 0; i < parts; ++i) {
     for (int j = 0; j < parts - i; ++j) {
       mesh.triangles.insert(mesh.triangles.end(), {place(i, j), place(i + 1, j), place(i, j + 1)});
-      if (j + 1 < parts - i) mesh.triangles.insert(mesh.triangles.end(), {place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)});
+      if (j + 1 < parts - i)
+        mesh.triangles.insert(mesh.triangles.end(), {place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)});
     }
   }
 }
@@ -168,7 +179,8 @@ namespace {
 bool isClosed(const contact::TriangleMesh& mesh) {
   const std::vector<contact::HalfEdge> half_edges = contact::sortedHalfEdges(mesh.triangles);
   const contact::MeshPieces pieces = contact::findPieces(mesh, half_edges, contact::findTopology(mesh, half_edges));
-  return std::all_of(pieces.list.begin(), pieces.list.end(), [](const auto& piece) { return piece.closed && !piece.facesInwards(); });
+  return std::all_of(pieces.list.begin(), pieces.list.end(),
+                     [](const auto& piece) { return piece.closed && !piece.facesInwards(); });
 }
 
 ViewMesh closed(ViewMesh mesh) {
@@ -199,7 +211,8 @@ ViewMesh shapeMesh(const contact::Shape& shape, MeshLook look, double extent) {
 
 namespace {
 
-// Of the hull of a pad: each face moved out by the rounding, and its edges and corners rounded by strips and caps of small facets.
+// Of the hull of a pad: each face moved out by the rounding, and its edges and corners
+// rounded by strips and caps of small facets.
 void addRoundEdge(ViewMesh& mesh, const Vec3& from, const Vec3& to, const Vec3& n, const Vec3& m, double rho) {
   constexpr int kParts = 6;
   const auto normal = [&](int i) -> Vec3 { return (n + (m - n) * (static_cast<double>(i) / kParts)).normalized(); };
@@ -223,7 +236,8 @@ ViewMesh meshOf(const contact::PadTip& pad) {
     addFace(mesh, corners, face.n);
   }
   for (const auto& edge : hull.edges()) {
-    const Vec3 &left = hull.faces()[static_cast<std::size_t>(edge.left)].n, &right = hull.faces()[static_cast<std::size_t>(edge.right)].n;
+    const Vec3 &left = hull.faces()[static_cast<std::size_t>(edge.left)].n,
+               &right = hull.faces()[static_cast<std::size_t>(edge.right)].n;
     addRoundEdge(mesh, vertex(edge.to), vertex(edge.from), left, right, pad.rounding);
   }
   const ViewMesh ball = meshOf(contact::Sphere{pad.rounding});
@@ -253,7 +267,9 @@ ViewMesh tipMesh(const contact::FingerShape& tip) {
 }
 
 ViewMesh ballMesh() { return closed(meshOf(contact::Sphere{1})); }
-ViewMesh rodMesh() { return closed(revolve({{0, 1, 0, 1}, {1, 1, 0, 1}, {1, 1, 1, 0}, {1, 0, 1, 0}, {1, 0, 0, -1}, {0, 0, 0, -1}}, 24)); }
+ViewMesh rodMesh() {
+  return closed(revolve({{0, 1, 0, 1}, {1, 1, 0, 1}, {1, 1, 1, 0}, {1, 0, 1, 0}, {1, 0, 0, -1}, {0, 0, 0, -1}}, 24));
+}
 ViewMesh openConeMesh() {
   const double k = std::sqrt(0.5);
   return revolve({{1, 1, k, -k}, {0, 0, k, -k}}, 48);
@@ -272,7 +288,8 @@ ViewMesh fingerMesh(double length) {
   const double end = width(1);
   for (int i = 1; i <= 12; ++i) {
     const double a = -kUp * i / 12;
-    profile.push_back({std::max(end * math::cos(a), 0.0), -length + 0.5 * end * math::sin(a), math::cos(a), math::sin(a)});
+    profile.push_back(
+        {std::max(end * math::cos(a), 0.0), -length + 0.5 * end * math::sin(a), math::cos(a), math::sin(a)});
   }
   ViewMesh mesh = revolve(profile, 64);
   const Eigen::Matrix3f turn = Eigen::Quaternionf::FromTwoVectors(Vec3f::UnitZ(), Vec3f::UnitX()).toRotationMatrix();

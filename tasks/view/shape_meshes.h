@@ -11,21 +11,24 @@ enum class MeshLook : std::uint8_t {
   kFacets,  // the flat triangles of the file
 };
 
-// A half-space is a disc of radius `extent` [m]; a dish ends at this distance from its axis, and has a rim and an outside to be seen.
+// A half-space is a disc of radius `extent` [m]; a dish ends at this distance from its axis,
+// and has a rim and an outside to be seen.
 ViewMesh shapeMesh(const contact::Shape& shape, MeshLook look, double extent);
 
 // A fingertip that isn't a sphere, in its own frame F: faces flat, edges round, where it touches.
 ViewMesh tipMesh(const contact::FingerShape& tip);
 
-// Of unit size, to be stretched: a ball of radius 1; a rod of radius 1 from z = 0 to 1; a cone with its apex at the origin, open towards
-// z = 1, where its radius is 1, and the same closed and pointing the other way (an arrow's head: base at z = 0, tip at 1).
+// Of unit size, to be stretched: a ball of radius 1; a rod of radius 1 from z = 0 to 1; a cone with its apex
+// at the origin, open towards z = 1, where its radius is 1, and the same closed and pointing the other way
+// (an arrow's head: base at z = 0, tip at 1).
 ViewMesh ballMesh();
 ViewMesh rodMesh();
 ViewMesh openConeMesh();
 ViewMesh arrowHeadMesh();
 
-// A fingertip of radius 1 about the origin, its pad towards -z: the finger comes from -x, rounded at both ends, `length` long behind the
-// centre. The pad is the part of the ball within `angle` of -z, a little proud; the nail lies opposite.
+// A fingertip of radius 1 about the origin, its pad towards -z: the finger comes from -x, rounded
+// at both ends, `length` long behind the centre. The pad is the part of the ball within `angle` of
+// -z, a little proud; the nail lies opposite.
 ViewMesh fingerMesh(double length);
 ViewMesh padMesh(double angle);
 ViewMesh nailMesh();

@@ -17,7 +17,8 @@ void captureSimulation(const Simulation& simulation, const engine::StepReport& r
 
 // "3 of 4 expectations met".
 std::string verdictOf(const ExpectationLog& log) {
-  const auto met = std::count_if(log.outcomes().begin(), log.outcomes().end(), [](const Outcome& o) { return o.reached && o.holds(); });
+  const auto met = std::count_if(log.outcomes().begin(), log.outcomes().end(),
+                                 [](const Outcome& o) { return o.reached && o.holds(); });
   if (log.outcomes().empty()) return "nothing was expected";
   return fmt::format("{} of {} met", met, counted(static_cast<std::int64_t>(log.outcomes().size()), "expectation"));
 }
@@ -117,7 +118,8 @@ Image pictureOf(const Simulation& simulation, bool as_operator) {
   return viewer.picture();
 }
 
-WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool mouse, const std::atomic<bool>& interrupted) {
+WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool mouse,
+                       const std::atomic<bool>& interrupted) {
   std::optional<devices::MouseHand> hand;
   if (mouse) hand.emplace(mouseMounts(simulation.scene()));
   const Snapshot start = snapshotOf(simulation);
@@ -127,22 +129,27 @@ WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool 
   ServoOptions servo;
   servo.rate = 1 / simulation.scene().options.h;
   if (!(servo.rate >= 100 && servo.rate <= 4000)) {
-    throw InputError(fmt::format("{}: ticks of {} s can't be watched in real time, ticks of 0.25 to 10 ms can. Take --screenshot FILE.png.",
-                                 simulation.scene().file, simulation.scene().options.h));
+    throw InputError(fmt::format(
+        "{}: ticks of {} s can't be watched in real time, ticks of 0.25 to 10 ms can. Take --screenshot FILE.png.",
+        simulation.scene().file, simulation.scene().options.h));
   }
-  const ServoReport report = runWatched(
-      {.cycle = cycle,
-       .model = simulation.model(),
-       .start = start,
-       .channel = channel,
-       .hand = hand ? &*hand : nullptr,
-       .linger = true,
-       .choose_camera = !mouse && !options.as_operator,
-       .camera = simulation.scene().camera,
-       .pull = mouse ? nullptr : &pull,
-       .verdict = [&cycle, &pull] { return pull.wasUsed() ? std::string("pulled by hand, not judged") : verdictOf(cycle.log()); }},
-      servo, options, interrupted);
-  return {report, cycle.lift(), cycle.log(), !mouse && simulation.ticks() >= simulation.scene().ticks(), pull.wasUsed()};
+  const ServoReport report =
+      runWatched({.cycle = cycle,
+                  .model = simulation.model(),
+                  .start = start,
+                  .channel = channel,
+                  .hand = hand ? &*hand : nullptr,
+                  .linger = true,
+                  .choose_camera = !mouse && !options.as_operator,
+                  .camera = simulation.scene().camera,
+                  .pull = mouse ? nullptr : &pull,
+                  .verdict =
+                      [&cycle, &pull] {
+                        return pull.wasUsed() ? std::string("pulled by hand, not judged") : verdictOf(cycle.log());
+                      }},
+                 servo, options, interrupted);
+  return {report, cycle.lift(), cycle.log(), !mouse && simulation.ticks() >= simulation.scene().ticks(),
+          pull.wasUsed()};
 }
 
 }  // namespace pincer::tasks

@@ -57,6 +57,7 @@ struct WatchResult {
 // In real time, until the window is closed. With `mouse` the scene's fingers (one or two) follow it from where they
 // start, without end; else the scene stands still where it ends. Throws InputError when the scene's fingers can't
 // follow a mouse.
-WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool mouse, const std::atomic<bool>& interrupted);
+WatchResult watchScene(Simulation& simulation, const ViewOptions& options, bool mouse,
+                       const std::atomic<bool>& interrupted);
 
 }  // namespace pincer::tasks

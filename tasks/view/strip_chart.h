@@ -26,7 +26,8 @@ class StripChart {
   const std::string& title() const { return title_; }
   const std::string& unit() const { return unit_; }
   const std::vector<std::string>& lines() const { return lines_; }
-  double last(std::size_t line) const { return points_.empty() ? 0 : points_.back().values[line]; }  // 0 within the dead band
+  // 0 within the dead band
+  double last(std::size_t line) const { return points_.empty() ? 0 : points_.back().values[line]; }
   const Point* at(double time) const;  // the last point at or before `time` [s], else the first; null: there is none
 
   // From zero, or the lowest value rounded down, to the highest rounded up: to 1, 2 or 5 times a power of ten; at least

@@ -53,7 +53,8 @@ const TimelineMoment* Timeline::before(double time) const {
 std::string momentText(const TimelineMoment& moment, const std::vector<std::string>& finger_names) {
   if (moment.finger < 0) return moment.kind == MomentKind::kContacts ? "bodies touch" : "bodies part";
   const auto i = static_cast<std::size_t>(moment.finger);
-  const std::string name = i < finger_names.size() && !finger_names[i].empty() ? finger_names[i] : "finger " + std::to_string(i + 1);
+  const std::string name =
+      i < finger_names.size() && !finger_names[i].empty() ? finger_names[i] : "finger " + std::to_string(i + 1);
   switch (moment.kind) {
     case MomentKind::kTouch:
       return name + " touches";

@@ -1,4 +1,5 @@
-// timeline: what happened when, in the snapshots that were seen: fingers that touch, let go, slip; forces that were cut; the end of a sleep.
+// timeline: what happened when, in the snapshots that were seen: fingers that touch, let go, slip;
+// forces that were cut; the end of a sleep.
 #pragma once
 #include <string>
 #include <vector>
@@ -37,7 +38,8 @@ class Timeline {
 // "index touches".
 std::string momentText(const TimelineMoment& moment, const std::vector<std::string>& finger_names);
 
-// A round distance between the marks of an axis from 0 to `span`, of which at most `most` fit: 1, 2 or 5 times a power of ten.
+// A round distance between the marks of an axis from 0 to `span`, of which at most
+// `most` fit: 1, 2 or 5 times a power of ten.
 double tickStep(double span, int most);
 
 }  // namespace pincer::tasks

@@ -10,8 +10,10 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr ImU32 kBarPaper = IM_COL32(20, 23, 28, 205), kBarInk = IM_COL32(235, 238, 242, 255), kBarDim = IM_COL32(235, 238, 242, 110);
-constexpr ImU32 kPassed = IM_COL32(70, 140, 235, 255), kTouchInk = IM_COL32(115, 217, 128, 255), kSlipMark = IM_COL32(255, 115, 90, 255);
+constexpr ImU32 kBarPaper = IM_COL32(20, 23, 28, 205), kBarInk = IM_COL32(235, 238, 242, 255),
+                kBarDim = IM_COL32(235, 238, 242, 110);
+constexpr ImU32 kPassed = IM_COL32(70, 140, 235, 255), kTouchInk = IM_COL32(115, 217, 128, 255),
+                kSlipMark = IM_COL32(255, 115, 90, 255);
 constexpr ImU32 kReleaseInk = IM_COL32(200, 200, 200, 255);
 constexpr int kMostBodies = 12;  // in the list
 
@@ -51,7 +53,8 @@ void drawTimeline(const OverlayText& text, int width, int height) {
   }
   for (const TimelineMoment& moment : text.timeline->moments()) {
     if (moment.time < text.from || moment.time > text.to) continue;
-    list->AddTriangleFilled({x(moment.time) - 4, y + 9}, {x(moment.time) + 4, y + 9}, {x(moment.time), y + 2}, inkOf(moment.kind));
+    list->AddTriangleFilled({x(moment.time) - 4, y + 9}, {x(moment.time) + 4, y + 9}, {x(moment.time), y + 2},
+                            inkOf(moment.kind));
   }
   list->AddCircleFilled({x(text.snapshot->time), y}, 6, kBarInk, 20);
 }
@@ -60,8 +63,9 @@ void drawScale(const OverlayText& text, int width, int height) {
   const std::string words = "grid " + lengthText(text.grid);
   const ImVec2 size = ImGui::CalcTextSize(words.c_str());
   const float below = text.timeline && text.choice.overlay ? static_cast<float>(kBarHeight) : 0;
-  ImGui::GetBackgroundDrawList()->AddText({static_cast<float>(width) - size.x - 14, static_cast<float>(height) - size.y - 8 - below},
-                                          IM_COL32(40, 46, 54, 220), words.c_str());
+  ImGui::GetBackgroundDrawList()->AddText(
+      {static_cast<float>(width) - size.x - 14, static_cast<float>(height) - size.y - 8 - below},
+      IM_COL32(40, 46, 54, 220), words.c_str());
 }
 
 void drawBodies(const OverlayText& text, int width, int height) {

@@ -14,7 +14,10 @@ namespace {
 class RecordedTrial final : public ServoCycle {
  public:
   RecordedTrial(HandsCycle& cycle, TrialCapture& capture, History& history)
-      : cycle_(cycle), capture_(capture), history_(history), snapshot_(Snapshot::sizedFor(cycle.trial().scene().model.grasp)) {}
+      : cycle_(cycle),
+        capture_(capture),
+        history_(history),
+        snapshot_(Snapshot::sizedFor(cycle.trial().scene().model.grasp)) {}
 
   bool tick(double now) override {
     const double start = steadySeconds();
@@ -69,7 +72,8 @@ TrialRecording recordFinger(FingerTrial& trial, const std::atomic<bool>& interru
   return recording;
 }
 
-TrialRecording recordTrial(HandsCycle& cycle, std::size_t trial, std::size_t trials, const std::atomic<bool>& interrupted) {
+TrialRecording recordTrial(HandsCycle& cycle, std::size_t trial, std::size_t trials,
+                           const std::atomic<bool>& interrupted) {
   TrialRecording recording{History(std::numeric_limits<std::size_t>::max()), {}};
   TrialCapture capture(cycle, trial, trials);
   RecordedTrial recorded(cycle, capture, recording.history);

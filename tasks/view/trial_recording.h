@@ -13,13 +13,14 @@ struct TrialRecording {
 };
 
 // Runs the trial in virtual time. About 1 KB per tick.
-TrialRecording recordTrial(HandsCycle& cycle, std::size_t trial, std::size_t trials, const std::atomic<bool>& interrupted);
+TrialRecording recordTrial(HandsCycle& cycle, std::size_t trial, std::size_t trials,
+                           const std::atomic<bool>& interrupted);
 
 // Likewise of a trial with one finger, as whoever knows all sees it.
 TrialRecording recordFinger(FingerTrial& trial, const std::atomic<bool>& interrupted);
 
-// Shows it from `time` [s] on, in a window until the person closes it, or, without --view, as one picture in the file of --screenshot.
-// Throws devices::DisplayError where there is no display.
+// Shows it from `time` [s] on, in a window until the person closes it, or, without --view, as one picture in the file
+// of --screenshot. Throws devices::DisplayError where there is no display.
 void showRecording(const grasp::GraspModel& model, History recording, double time, const ViewOptions& options,
                    const std::atomic<bool>& interrupted);
 

@@ -38,7 +38,11 @@ class PublishedTrial final : public ServoCycle {
 class WindowStage final : public TrialStage {
  public:
   WindowStage(bool mouse, const ViewOptions& view, const ServoOptions& servo, const std::atomic<bool>& interrupted)
-      : mouse_(mouse), view_(view), servo_(servo), interrupted_(interrupted), surface_(devices::openWindow({"pincer " + view.title})) {}
+      : mouse_(mouse),
+        view_(view),
+        servo_(servo),
+        interrupted_(interrupted),
+        surface_(devices::openWindow({"pincer " + view.title})) {}
 
   TrialHost host() override {
     TrialHost host;
@@ -49,9 +53,13 @@ class WindowStage final : public TrialStage {
         return hands;
       };
     }
-    host.serve = [this](HandsCycle& cycle, std::size_t trial, std::size_t trials) { return serve(cycle, trial, trials); };
+    host.serve = [this](HandsCycle& cycle, std::size_t trial, std::size_t trials) {
+      return serve(cycle, trial, trials);
+    };
     host.show = [this](const StudyPage& page) { return showPage(*surface_, view_.title, page, interrupted_); };
-    host.ask = [this](const AskedQuestion& question) { return askOnPage(*surface_, view_.title, question, interrupted_); };
+    host.ask = [this](const AskedQuestion& question) {
+      return askOnPage(*surface_, view_.title, question, interrupted_);
+    };
     return host;
   }
   AnswerBox& keys() override { return keys_; }
@@ -83,13 +91,15 @@ class WindowStage final : public TrialStage {
 
 void addTrialViewOptions(CLI::App& command, ViewOptions& options) {
   addViewOptions(command, options);
-  command.add_flag("--blind", options.blind, "In the window show neither object nor fingers nor forces, as the protocol asks of a person");
+  command.add_flag("--blind", options.blind,
+                   "In the window show neither object nor fingers nor forces, as the protocol asks of a person");
 }
 
 std::unique_ptr<TrialStage> hostOf(const std::string& devices, const ViewOptions& view, const ServoOptions& servo,
                                    const std::atomic<bool>& interrupted) {
   if (devices == "mouse" && !view.view) {
-    throw InputError("run: --devices mouse moves the fingers in the window that --view opens. Add --view, or leave --devices out.");
+    throw InputError(
+        "run: --devices mouse moves the fingers in the window that --view opens. Add --view, or leave --devices out.");
   }
   if (!view.view) return nullptr;
   return std::make_unique<WindowStage>(devices == "mouse", view, servo, interrupted);

@@ -19,7 +19,8 @@ class TrialStage {
   virtual AnswerBox& keys() = 0;  // that the window's keyboard fills
 };
 
-// Null when nobody watches. Throws InputError for devices that need a window and have none, devices::DisplayError where there is no display.
+// Null when nobody watches. Throws InputError for devices that need a window and have none,
+// devices::DisplayError where there is no display.
 std::unique_ptr<TrialStage> hostOf(const std::string& devices, const ViewOptions& view, const ServoOptions& servo,
                                    const std::atomic<bool>& interrupted);
 

@@ -23,7 +23,8 @@ constexpr double kMostSnapshotCost = 2000;  // [ns]
 // The pick-up, its sphere replaced by a mesh of 20480 triangles when wanted, in the middle of the lift.
 Simulation liftedScene(bool mesh) {
   Scene scene = readBuiltinScene("pickup");
-  if (mesh) scene.bodies[1].shape = contact::Mesh{contact::SmoothMesh::build(contact::geodesicSphere(0.02, kBenchParts))};
+  if (mesh)
+    scene.bodies[1].shape = contact::Mesh{contact::SmoothMesh::build(contact::geodesicSphere(0.02, kBenchParts))};
   Simulation simulation(std::move(scene));
   for (int i = 0; i < 1800; ++i) simulation.tick();
   return simulation;
@@ -69,7 +70,8 @@ std::vector<Record> picturesPerSecond(const ViewBenchOptions& options) {
     if (i >= 2) times.push_back(steadySeconds() - begin);
   }
   const double best = 1 / *std::min_element(times.begin(), times.end());
-  return {atLeast("1280x720, 20480 triangles, best, " + viewer.painter().renderer().graphics(), best, "1/s", kLeastPictures),
+  return {atLeast("1280x720, 20480 triangles, best, " + viewer.painter().renderer().graphics(), best, "1/s",
+                  kLeastPictures),
           unbounded("1280x720, 20480 triangles, median", 1 / quantileOf(times, 0.5), "1/s")};
 }
 

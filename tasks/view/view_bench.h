@@ -1,5 +1,5 @@
-// view_bench: `pincer bench view`: what watching costs: pictures per second without a graphics card, a snapshot's cost in the tick, and whether
-// the viewer delays the servo.
+// view_bench: `pincer bench view`: what watching costs: pictures per second without a graphics card, a snapshot's cost
+// in the tick, and whether the viewer delays the servo.
 #pragma once
 #include <string>
 #include <vector>

@@ -12,7 +12,8 @@ namespace {
 // The servo, beside the viewer; ends with it.
 class ServoThread {
  public:
-  ServoThread(const WatchedCycle& watched, const ServoOptions& servo, PaceControl& pace, const std::atomic<bool>& interrupted)
+  ServoThread(const WatchedCycle& watched, const ServoOptions& servo, PaceControl& pace,
+              const std::atomic<bool>& interrupted)
       : pace_(pace), paced_(watched.cycle, pace, servo.rate) {
     thread_ = std::thread([this, servo, &interrupted] {
       try {

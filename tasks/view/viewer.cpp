@@ -16,7 +16,9 @@ namespace {
 constexpr double kNoticeTime = 2.5;  // [s]
 constexpr double kQuietTime = 0.4;   // without change, until a picture at its best is worth its time [s]
 
-double viewerSeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double viewerSeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 // The first of pattern(1), pattern(2), ... that isn't there yet.
 std::string freshPath(const std::string& folder, const std::string& stem, const std::string& ending) {
@@ -28,9 +30,14 @@ std::string freshPath(const std::string& folder, const std::string& stem, const 
 
 }  // namespace
 
-Viewer::Viewer(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start, SnapshotChannel& channel,
-               PaceControl& pace, devices::MouseHand* hand, ViewerOptions options)
-    : surface_(surface), channel_(channel), pace_(pace), hand_(hand), options_(std::move(options)), painter_(surface, model, start) {
+Viewer::Viewer(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start,
+               SnapshotChannel& channel, PaceControl& pace, devices::MouseHand* hand, ViewerOptions options)
+    : surface_(surface),
+      channel_(channel),
+      pace_(pace),
+      hand_(hand),
+      options_(std::move(options)),
+      painter_(surface, model, start) {
   for (const grasp::FingerModel& finger : model.fingers) pads_.push_back({finger.name, 1.5 * finger.radius, 0});
   for (const grasp::FingerModel& finger : model.fingers) finger_names_.push_back(finger.name);
   charts_.emplace(start, finger_names_);
@@ -116,7 +123,8 @@ void Viewer::play() {
 void Viewer::chartRecording() {
   constexpr std::size_t kPoints = 400;
   const double from = shown().time - StripChart::kSeconds;
-  const std::size_t last = scrub_.value_or(history_.size() - 1), first = history_.find(from), step = (last - first) / kPoints + 1;
+  const std::size_t last = scrub_.value_or(history_.size() - 1), first = history_.find(from),
+                    step = (last - first) / kPoints + 1;
   for (std::size_t i = first; i < last; i += step) charts_->add(history_.at(i));
   charts_->add(shown());
 }
@@ -134,13 +142,18 @@ void Viewer::look() {
   if (const double late = pace_.late; late >= 0) lateness_.add(late);
 }
 
-bool Viewer::hasBar() const { return history_.size() > 1 && options_.keys && !(hand_ && !pace_.paused) && !shown().trial.blind && !page_; }
+bool Viewer::hasBar() const {
+  return history_.size() > 1 && options_.keys && !(hand_ && !pace_.paused) && !shown().trial.blind && !page_;
+}
 
 BodyRow Viewer::rowOf(std::size_t body) const {
   const Snapshot& now = shown();
   const std::size_t at = history_.size() == 0 ? 0 : history_.find(now.time);
   const Snapshot& before = at > 0 ? history_.at(at - 1) : now;
-  BodyRow row{.name = body_names_[body], .p_W = now.X_WB[body].p, .selected = choice_.selected == static_cast<int>(body), .contacts = {}};
+  BodyRow row{.name = body_names_[body],
+              .p_W = now.X_WB[body].p,
+              .selected = choice_.selected == static_cast<int>(body),
+              .contacts = {}};
   if (now.time > before.time) row.speed = (now.X_WB[body].p - before.X_WB[body].p).norm() / (now.time - before.time);
   row.turn = angleBetween(start_X_WB_[body].q, now.X_WB[body].q);
   return row;
@@ -151,7 +164,8 @@ std::vector<BodyRow> Viewer::bodyRows() const {
   for (std::size_t i = 0; i < moves_.size(); ++i) {
     if (!moves_[i]) continue;
     rows.push_back(rowOf(i));
-    if (rows.back().selected) rows.back().contacts = contactWords(shown(), static_cast<int>(i), finger_names_, body_names_);
+    if (rows.back().selected)
+      rows.back().contacts = contactWords(shown(), static_cast<int>(i), finger_names_, body_names_);
   }
   return rows;
 }
@@ -161,7 +175,8 @@ std::string Viewer::hoveredWords() const {
   const auto i = static_cast<std::size_t>(hovered_);
   if (!isBody(hovered_)) {
     const std::size_t finger = i - body_names_.size();
-    return fmt::format("{}\n{}", finger_names_[finger].empty() ? "finger" : finger_names_[finger], fingerWords(shown().fingers[finger]));
+    return fmt::format("{}\n{}", finger_names_[finger].empty() ? "finger" : finger_names_[finger],
+                       fingerWords(shown().fingers[finger]));
   }
   if (!moves_[i]) return body_names_[i];
   const std::string contacts = contactWords(shown(), hovered_, finger_names_, body_names_);
@@ -227,7 +242,8 @@ std::string Viewer::paceText() const {
                                   : "real time";
   if (loop_) words += ", over and over";
   const bool at_end = !scrub_ || *scrub_ + 1 == history_.size();
-  if (recorded_ && pace_.paused) return at_end ? "ended" : fmt::format("paused, of {:.3f} s", history_.at(history_.size() - 1).time);
+  if (recorded_ && pace_.paused)
+    return at_end ? "ended" : fmt::format("paused, of {:.3f} s", history_.at(history_.size() - 1).time);
   if (replaying_) return "again, " + words;
   if (scrub_ && !recorded_) return "looking back";
   if (pace_.ended && !recorded_) return options_.verdict ? "ended: " + options_.verdict() : "ended";
@@ -259,6 +275,8 @@ void Viewer::toggleSequence() {
   notice_until_ = viewerSeconds() + kNoticeTime;
 }
 
-void Viewer::savePictureOfSequence() { writePng(painter_.picture(), fmt::format("{}/{:06}.png", sequence_, ++sequence_count_)); }
+void Viewer::savePictureOfSequence() {
+  writePng(painter_.picture(), fmt::format("{}/{:06}.png", sequence_, ++sequence_count_));
+}
 
 }  // namespace pincer::tasks

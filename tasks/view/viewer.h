@@ -20,22 +20,23 @@ namespace pincer::tasks {
 
 struct ViewerOptions {
   std::string title = {};
-  bool keys = true;                                               // false: only Esc
-  std::string folder = ".";                                       // for screenshots and sequences
-  bool choose_camera = false;                                     // that sees most of each thing; else as the operator looks
-  SceneCamera camera = {};                                        // from where it looks, as far as it is given
-  BodyPull* pull = nullptr;                                       // by the mouse; null: bodies can't be pulled
-  bool from_the_side = false;                                     // looks along -x at the plane x = 0, in which the mouse moves fingers
-  std::function<std::string()> verdict = {};                      // said once the cycle has ended; empty: none
-  std::function<void(int key)> answer = {};                       // gets the digits and Enter; empty: nobody does
-  std::function<void(const devices::InputEvent& key)> type = {};  // gets every key that goes down, but Esc; empty: nobody does
+  bool keys = true;                           // false: only Esc
+  std::string folder = ".";                   // for screenshots and sequences
+  bool choose_camera = false;                 // that sees most of each thing; else as the operator looks
+  SceneCamera camera = {};                    // from where it looks, as far as it is given
+  BodyPull* pull = nullptr;                   // by the mouse; null: bodies can't be pulled
+  bool from_the_side = false;                 // looks along -x at the plane x = 0, in which the mouse moves fingers
+  std::function<std::string()> verdict = {};  // said once the cycle has ended; empty: none
+  std::function<void(int key)> answer = {};   // gets the digits and Enter; empty: nobody does
+  // gets every key that goes down, but Esc; empty: nobody does
+  std::function<void(const devices::InputEvent& key)> type = {};
 };
 
 class Viewer {
  public:
   // All must outlive it; `hand` may be null.
-  Viewer(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start, SnapshotChannel& channel, PaceControl& pace,
-         devices::MouseHand* hand, ViewerOptions options);
+  Viewer(devices::Surface& surface, const grasp::GraspModel& model, const Snapshot& start, SnapshotChannel& channel,
+         PaceControl& pace, devices::MouseHand* hand, ViewerOptions options);
 
   // From now on what is shown is this, not empty, from `time` [s] on; the channel isn't looked at any more.
   void showRecording(History recording, double time = 0);

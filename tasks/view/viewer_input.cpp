@@ -13,8 +13,8 @@ constexpr double kTurnStep = 0.06;                    // of the hand by a key [r
 constexpr double kHandTurn = 2.0;                     // by a way of the mouse over the picture's height [rad]
 constexpr double kGripStep = 1.15;                    // per notch or key
 constexpr double kSlowest = 1.0 / 256, kFastest = 8;  // of real time
-constexpr double kClick = 4;                          // a button that goes up this near to where it went down was a click [pixels]
-constexpr double kZoomStep = 0.9;                     // per notch
+constexpr double kClick = 4;       // a button that goes up this near to where it went down was a click [pixels]
+constexpr double kZoomStep = 0.9;  // per notch
 
 Vec3 wayOf(ViewAction action) {
   switch (action) {
@@ -97,7 +97,9 @@ void Viewer::movePull() {
   options_.pull->moveTo(painter_.camera().fromPixel(mouse_, size.width, size.height, pulled_W_));
 }
 
-bool Viewer::isAnswer(int key) const { return options_.answer && ((key >= '0' && key <= '9') || key == devices::kKeyEnter); }
+bool Viewer::isAnswer(int key) const {
+  return options_.answer && ((key >= '0' && key <= '9') || key == devices::kKeyEnter);
+}
 
 // From the side, right is away from the operator, and depth to the left.
 void Viewer::drag(double right, double down) {
@@ -254,14 +256,18 @@ void Viewer::select(int body) {
 int Viewer::thingUnderMouse() {
   if (shown().trial.blind) return -1;
   constexpr int kShare = 4;  // of the window's pixels along a side, that are looked at
-  const devices::SurfaceSize size = surface_.size(), small{std::max(1, size.width / kShare), std::max(1, size.height / kShare)};
+  const devices::SurfaceSize size = surface_.size(),
+                             small{std::max(1, size.width / kShare), std::max(1, size.height / kShare)};
   const int x = std::clamp(static_cast<int>(mouse_.x()) / kShare, 0, small.width - 1);
   const int y = std::clamp(static_cast<int>(mouse_.y()) / kShare, 0, small.height - 1);
-  const std::vector<int> things = painter_.renderer().things(painter_.scene().compose(shown(), choice_), painter_.camera(), small);
+  const std::vector<int> things =
+      painter_.renderer().things(painter_.scene().compose(shown(), choice_), painter_.camera(), small);
   return things[static_cast<std::size_t>(y * small.width + x)] - SceneDrawing::thingOfBody(0);
 }
 
-bool Viewer::mouseIsOnBar() const { return hasBar() && choice_.overlay && mouse_.y() > surface_.size().height - kBarHeight; }
+bool Viewer::mouseIsOnBar() const {
+  return hasBar() && choice_.overlay && mouse_.y() > surface_.size().height - kBarHeight;
+}
 
 void Viewer::scrubToMouse() {
   if (!recorded_ && !pace_.ended) pace_.paused = true;

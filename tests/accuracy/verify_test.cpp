@@ -16,7 +16,8 @@ TEST_P(Verify, KeepsItsPromise) {
   MeasureContext context;
   context.thorough = std::getenv("PINCER_LONG_TESTS") != nullptr;
   for (const Record& r : measurement.run(context)) {
-    fmt::print("  {:<28} {:<52} {:>11.3g} {} {:<8.3g} {}\n", measurement.name, r.metric, r.value, r.relation, r.bound, r.unit);
+    fmt::print("  {:<28} {:<52} {:>11.3g} {} {:<8.3g} {}\n", measurement.name, r.metric, r.value, r.relation, r.bound,
+               r.unit);
     EXPECT_TRUE(r.ok) << measurement.name << ": " << r.metric << " = " << r.value << " " << r.unit;
   }
 }

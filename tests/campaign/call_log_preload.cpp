@@ -1,5 +1,6 @@
-// A library to be preloaded (LD_PRELOAD) into pincer: keeps every write and every fsync, with its bytes, in their order. So a test can make the
-// file that a power cut would have left at any moment (tests/process/durability_test.cpp).
+// A library to be preloaded (LD_PRELOAD) into pincer: keeps every write and every fsync, with its
+// bytes, in their order. So a test can make the file that a power cut would have left at any
+// moment (tests/process/durability_test.cpp).
 //
 //   PINCER_CALL_LOG=FILE   records, one after the other:
 //     write INODE OFFSET SIZE PATH\n and the bytes     cut INODE LENGTH PATH\n     sync INODE PATH\n     unlink PATH\n

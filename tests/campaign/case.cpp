@@ -13,7 +13,8 @@
 namespace pincer::campaign {
 namespace {
 
-constexpr double kSlowest = 20;  // times what the session of inputs.h takes: beyond it hangs, on a machine as busy as this one too
+// times what the session of inputs.h takes: beyond it hangs, on a machine as busy as this one too
+constexpr double kSlowest = 20;
 
 std::uint64_t seedOf(const Ground& ground, const std::string& row, int number) {
   std::uint64_t hash = 14695981039346656037u ^ ground.seed;
@@ -23,7 +24,9 @@ std::uint64_t seedOf(const Ground& ground, const std::string& row, int number) {
 
 Verdict kindOf(const Ended& e) {
   if (e.stopped) return Verdict::kStopped;
-  return e.exit_code == 0 || e.exit_code == 1 ? Verdict::kFine : e.exit_code == 5 ? Verdict::kStopped : Verdict::kRefused;
+  return e.exit_code == 0 || e.exit_code == 1 ? Verdict::kFine
+         : e.exit_code == 5                   ? Verdict::kStopped
+                                              : Verdict::kRefused;
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ std::string helpOf(const Ground& ground, std::vector<std::string> words) {
   return ended.out;
 }
 
-// Of "  -h,--help   Text" the name "--help", of "  --seed UINT=1   Text" also the type "UINT=1": a text begins after two blanks at least.
+// Of "  -h,--help   Text" the name "--help", of "  --seed UINT=1   Text" also the type "UINT=1": a text
+//                                                                  begins after two blanks at least.
 Option optionIn(const std::string& line) {
   const std::string head = line.substr(2, line.find("  ", 2) - 2);
   Option option;
@@ -89,8 +90,10 @@ std::string soundValue(const Ground& ground, const Option& wanted) {
 
 // Makes runs short: of whatever a command has of these.
 const std::vector<std::pair<std::string, std::string>> kShort = {
-    {"--duration", "0.05"}, {"--ticks", "100"},     {"--seeds", "1"}, {"--repetitions", "1"},       {"--participants", "1"},
-    {"--no-report", ""},    {"--experiments", "1"}, {"--list", ""},   {"--study-experiments", "0"}, {"--control-experiments", "1"}};
+    {"--duration", "0.05"},        {"--ticks", "100"},      {"--seeds", "1"},
+    {"--repetitions", "1"},        {"--participants", "1"}, {"--no-report", ""},
+    {"--experiments", "1"},        {"--list", ""},          {"--study-experiments", "0"},
+    {"--control-experiments", "1"}};
 
 }  // namespace
 
@@ -106,7 +109,8 @@ std::vector<std::string> soundArguments(const Ground& ground, const Command& com
     if (positional.required) arguments.push_back(soundValue(ground, positional));
   }
   for (const Option& option : command.options) {
-    const auto brief = std::find_if(kShort.begin(), kShort.end(), [&](const auto& s) { return s.first == option.name; });
+    const auto brief =
+        std::find_if(kShort.begin(), kShort.end(), [&](const auto& s) { return s.first == option.name; });
     if (!option.required && brief == kShort.end() && option.name != "--out") continue;
     arguments.push_back(option.name);
     if (option.type.empty()) continue;

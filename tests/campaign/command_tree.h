@@ -1,4 +1,5 @@
-// command_tree: what commands the program has and what they take, as its own --help tells: an option that is added is covered by itself.
+// command_tree: what commands the program has and what they take, as its own --help tells: an
+// option that is added is covered by itself.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
-// fail_malloc: preloaded into pincer (LD_PRELOAD), lets an allocation fail: malloc, calloc, realloc and all that call them, operator new too.
+// fail_malloc: preloaded into pincer (LD_PRELOAD), lets an allocation fail: malloc, calloc, realloc
+// and all that call them, operator new too.
 //
 //   PINCER_FAIL_MALLOC=N      the N-th allocation since the program's libraries were loaded, and no other
 //   PINCER_FAIL_MALLOC=N+     it and all that follow, in every thread
@@ -62,7 +63,9 @@ void* malloc(std::size_t size) { return fails() ? nullptr : __libc_malloc(size);
 void* calloc(std::size_t n, std::size_t size) { return fails() ? nullptr : __libc_calloc(n, size); }
 void* realloc(void* p, std::size_t size) { return fails() ? nullptr : __libc_realloc(p, size); }
 void* memalign(std::size_t alignment, std::size_t size) { return fails() ? nullptr : __libc_memalign(alignment, size); }
-void* aligned_alloc(std::size_t alignment, std::size_t size) { return fails() ? nullptr : __libc_memalign(alignment, size); }
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  return fails() ? nullptr : __libc_memalign(alignment, size);
+}
 int posix_memalign(void** p, std::size_t alignment, std::size_t size) {
   if (fails()) return ENOMEM;
   *p = __libc_memalign(alignment, size);

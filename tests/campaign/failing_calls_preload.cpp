@@ -1,4 +1,5 @@
-// A library to be preloaded (LD_PRELOAD): the N-th call of one function of the C library fails, as on a full disk or a table of files that is full.
+// A library to be preloaded (LD_PRELOAD): the N-th call of one function of the C library fails, as on a
+// full disk or a table of files that is full.
 //
 //   CAMPAIGN_FAIL_CALL=write      the function; "any": any of those below
 //   CAMPAIGN_FAIL_AT=3            the third call fails; with CAMPAIGN_FAIL_FOREVER set, all from there on
@@ -6,7 +7,8 @@
 //   CAMPAIGN_FAIL_LOG=FILE        made when a call fails
 //   CAMPAIGN_COUNT_CALLS=FILE     at its end, a line "NAME COUNT" for each that was called
 //
-// Only in the program named pincer, not in what it starts; never on the standard streams, which have a row of their own.
+// Only in the program named pincer, not in what it starts; never on the
+// standard streams, which have a row of their own.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -40,7 +42,8 @@ Plan planned() {
   const char* at = std::getenv("CAMPAIGN_FAIL_AT");
   const char* error = std::getenv("CAMPAIGN_FAIL_ERROR");
   if (!isHere() || call == nullptr || at == nullptr || error == nullptr) return {};
-  return {call, std::atol(at), std::atoi(error), std::getenv("CAMPAIGN_FAIL_FOREVER") != nullptr, std::getenv("CAMPAIGN_FAIL_LOG")};
+  return {call, std::atol(at), std::atoi(error), std::getenv("CAMPAIGN_FAIL_FOREVER") != nullptr,
+          std::getenv("CAMPAIGN_FAIL_LOG")};
 }
 
 const Plan& plan() {
@@ -80,7 +83,8 @@ void note() {
 // True if this call is the one; errno is set.
 bool fails(const char* call) {
   count(call);
-  if (plan().call == nullptr || (std::strcmp(plan().call, call) != 0 && std::strcmp(plan().call, "any") != 0)) return false;
+  if (plan().call == nullptr || (std::strcmp(plan().call, call) != 0 && std::strcmp(plan().call, "any") != 0))
+    return false;
   const long n = ++g_calls;
   if (plan().forever ? n < plan().at : n != plan().at) return false;
   note();

@@ -15,7 +15,8 @@ fs::path callLibrary(const Ground& ground) { return ground.build / "failing_call
 fs::path allocationLibrary(const Ground& ground) { return ground.build / "libfail_malloc.so"; }
 
 // A run of its own, in a folder of its own, which it returns.
-fs::path runUndisturbed(const Ground& ground, const Work& work, const std::vector<std::pair<std::string, std::string>>& variables) {
+fs::path runUndisturbed(const Ground& ground, const Work& work,
+                        const std::vector<std::pair<std::string, std::string>>& variables) {
   Launch launch;
   launch.program = ground.pincer;
   launch.arguments = work.arguments;
@@ -59,7 +60,8 @@ const std::map<std::string, std::string>& soundOutputs(const Ground& ground, con
 void requireWholeOutputs(Case& c, const Work& work, const Ended& ended) {
   for (const auto& [name, bytes] : soundOutputs(c.ground, work)) {
     const bool there = fs::exists(c.folder / name);
-    if (!there && ended.exit_code == 0 && ended.signal == 0) c.fault(Verdict::kLost, "said that all was well, but there is no " + name);
+    if (!there && ended.exit_code == 0 && ended.signal == 0)
+      c.fault(Verdict::kLost, "said that all was well, but there is no " + name);
     if (there && readFile(c.folder / name) != bytes) c.fault(Verdict::kWrong, name + " isn't whole");
   }
 }
@@ -75,7 +77,9 @@ void requireSound(Case& c, const Work& work, const Ended& ended, bool lasts) {
 
 // Makes it fail, in the words of the two libraries: the only place that knows their variables.
 void arrange(const Ground& ground, const Failure& failure, const fs::path& log, Launch& launch) {
-  const auto set = [&](const char* name, std::string value) { launch.environment.emplace_back(name, std::move(value)); };
+  const auto set = [&](const char* name, std::string value) {
+    launch.environment.emplace_back(name, std::move(value));
+  };
   if (failure.call == kAllocation) {
     set("LD_PRELOAD", allocationLibrary(ground));
     return set("PINCER_FAIL_MALLOC", std::to_string(failure.at) + (failure.lasts ? "+" : ""));
@@ -112,7 +116,8 @@ const Counts& callsOf(const Ground& ground, const Work& work) {
   runUndisturbed(ground, work, {{"LD_PRELOAD", allocationLibrary(ground)}, {"PINCER_COUNT_MALLOC", allocations}});
   addCounts(calls, counts);
   addCounts(allocations, counts);
-  if (!counts.contains(kAllocation) || counts.size() < 2) throw std::runtime_error("the calls of an undisturbed run could not be counted");
+  if (!counts.contains(kAllocation) || counts.size() < 2)
+    throw std::runtime_error("the calls of an undisturbed run could not be counted");
   return counts;
 }
 

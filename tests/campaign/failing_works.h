@@ -1,4 +1,5 @@
-// failing_works: short runs of the program in which one call of the system, or one allocation, fails; and what must be true afterwards.
+// failing_works: short runs of the program in which one call of the system, or one allocation,
+// fails; and what must be true afterwards.
 #pragma once
 #include <map>
 #include <string>
@@ -16,8 +17,8 @@ struct Work {
 // A session first: it has the most to lose.
 std::vector<Work> works(const Ground& ground);
 
-// How often an undisturbed run of `work` makes each call that can be made to fail, by the call's name (failing_calls_preload.cpp), and how often
-// it asks for memory, under kAllocation. Counted once per command line.
+// How often an undisturbed run of `work` makes each call that can be made to fail, by the call's name
+// (failing_calls_preload.cpp), and how often it asks for memory, under kAllocation. Counted once per command line.
 using Counts = std::map<std::string, long>;
 inline const std::string kAllocation = "allocation";
 const Counts& callsOf(const Ground& ground, const Work& work);
@@ -30,7 +31,8 @@ struct Failure {
   bool lasts = false;
 };
 
-// `work` with the failure, in the case's folder; judged: no crash, a documented exit code, a sentence, and nothing lost.
+// `work` with the failure, in the case's folder; judged: no crash, a documented
+// exit code, a sentence, and nothing lost.
 void runWithFailure(Case& c, const Work& work, const Failure& failure);
 
 }  // namespace pincer::campaign

@@ -14,15 +14,17 @@
 namespace pincer::campaign {
 namespace {
 
-constexpr std::array<const char*, 5> kStudies = {"smoothness-discrimination", "shape-identification", "repeated-localisation",
-                                                 "backlash-discrimination", "delay-discrimination"};
+constexpr std::array<const char*, 5> kStudies = {"smoothness-discrimination", "shape-identification",
+                                                 "repeated-localisation", "backlash-discrimination",
+                                                 "delay-discrimination"};
 
 void put(const fs::path& file, const std::string& bytes) {
   fs::create_directories(file.parent_path());
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-Ended make(const Ground& ground, std::vector<std::string> arguments, std::optional<Blow> blow = {}, const std::set<int>& codes = {0}) {
+Ended make(const Ground& ground, std::vector<std::string> arguments, std::optional<Blow> blow = {},
+           const std::set<int>& codes = {0}) {
   Launch launch;
   launch.program = ground.pincer;
   launch.arguments = std::move(arguments);
@@ -68,8 +70,18 @@ void makeTrajectory(const Ground& ground) {
 // A cube of 40 mm in units of 10 mm.
 constexpr std::array<std::array<float, 3>, 8> kCorners = {
     {{-2, -2, -2}, {2, -2, -2}, {2, 2, -2}, {-2, 2, -2}, {-2, -2, 2}, {2, -2, 2}, {2, 2, 2}, {-2, 2, 2}}};
-constexpr std::array<std::array<int, 3>, 12> kFaces = {
-    {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4}, {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}}};
+constexpr std::array<std::array<int, 3>, 12> kFaces = {{{0, 2, 1},
+                                                        {0, 3, 2},
+                                                        {4, 5, 6},
+                                                        {4, 6, 7},
+                                                        {0, 1, 5},
+                                                        {0, 5, 4},
+                                                        {1, 2, 6},
+                                                        {1, 6, 5},
+                                                        {2, 3, 7},
+                                                        {2, 7, 6},
+                                                        {3, 0, 4},
+                                                        {3, 4, 7}}};
 
 template <class T>
 void append(std::string& bytes, T value, bool big_endian = false) {
@@ -82,7 +94,8 @@ std::string textStl() {
   std::string text = "solid cube\n";
   for (const auto& face : kFaces) {
     text += "facet normal 0 0 0\n outer loop\n";
-    for (const int corner : face) text += fmt::format("  vertex {}\n", fmt::join(kCorners[static_cast<std::size_t>(corner)], " "));
+    for (const int corner : face)
+      text += fmt::format("  vertex {}\n", fmt::join(kCorners[static_cast<std::size_t>(corner)], " "));
     text += " endloop\nendfacet\n";
   }
   return text + "endsolid cube\n";
@@ -139,15 +152,16 @@ void makeMeshes(const Ground& ground) {
   fs::copy_file(ground.source / "tasks/scenes/files/star_knob.obj", folder / "star_knob.obj");
 }
 
-// As people's: from devices, with every input kept. A second of it; then the recorded arms have no samples any more, and the trial ends.
+// As people's: from devices, with every input kept. A second of it; then the recorded arms have
+// no samples any more, and the trial ends.
 void makePeoplesSession(const Ground& ground) {
   const std::string recording = readFile(recordingFile(ground));
   std::size_t end = 0;
   for (int rows = 0; rows < 12; ++rows) end = recording.find('\n', end) + 1;
   put(ground.inputs() / "short.csv", recording.substr(0, end));
   make(ground,
-       {"run", "sphere-pickup", "--devices", "replay", "--recording", "short.csv", "--yes", "--repetitions", "1", "--friction", "0.9",
-        "--condition", "force", "--sample-rate", "10", "--no-report", "--out", "people"},
+       {"run", "sphere-pickup", "--devices", "replay", "--recording", "short.csv", "--yes", "--repetitions", "1",
+        "--friction", "0.9", "--condition", "force", "--sample-rate", "10", "--no-report", "--out", "people"},
        {}, {0, 1});
 }
 
@@ -171,7 +185,8 @@ void makeSessions(Ground& ground) {
 std::vector<fs::path> filesOf(const fs::path& folder, const std::string& extension) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file() && (extension.empty() || entry.path().extension() == extension)) files.push_back(entry.path());
+    if (entry.is_regular_file() && (extension.empty() || entry.path().extension() == extension))
+      files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -186,10 +201,12 @@ void makeInputs(Ground& ground) {
   makeTrajectory(ground);
   makeMeshes(ground);
   for (const char* study : kStudies)
-    put(ground.inputs() / "studies" / (study + std::string(".json")), make(ground, {"run", study, "--print-study"}).out);
+    put(ground.inputs() / "studies" / (study + std::string(".json")),
+        make(ground, {"run", study, "--print-study"}).out);
   make(ground, {"run", "manipulation", "--write-study", "studies/manipulation.json"});
   put(calibrationFile(ground),
-      "{\n  \"device\": \"ARM1\",\n  \"values\": {\"base_x\": 0.012, \"base_y\": 0, \"base_z\": 0, \"base_turn\": 0.1}\n}\n");
+      "{\n  \"device\": \"ARM1\",\n  \"values\": {\"base_x\": 0.012, \"base_y\": 0, \"base_z\": 0, \"base_turn\": "
+      "0.1}\n}\n");
   put(robotFile(ground), kRobot);
   makeSessions(ground);
 }

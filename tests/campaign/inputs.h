@@ -8,7 +8,8 @@
 
 namespace pincer::campaign {
 
-// Makes all of them under ground.inputs(), and measures ground.session_time. Throws std::runtime_error if the program can't.
+// Makes all of them under ground.inputs(), and measures ground.session_time. Throws
+// std::runtime_error if the program can't.
 void makeInputs(Ground& ground);
 
 std::vector<fs::path> sceneFiles(const Ground& ground);  // of the house, and one whose finger follows a table

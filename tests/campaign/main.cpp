@@ -1,4 +1,5 @@
-// campaign: does to pincer what users, disks, kernels and other programs' files do at their worst, and counts what came of it.
+// campaign: does to pincer what users, disks, kernels and other programs' files do at
+// their worst, and counts what came of it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -39,14 +40,15 @@ std::string printable(std::string text) {
 }
 
 void tell(const Ground& ground, const Fault& fault) {
-  fmt::print(stderr, "  {} {}: {}\n    {}\n    again: {}\n", fault.row, kVerdictNames[static_cast<std::size_t>(fault.verdict)],
-             printable(fault.why), printable(fault.command), repeatCommand(ground, fault));
+  fmt::print(stderr, "  {} {}: {}\n    {}\n    again: {}\n", fault.row,
+             kVerdictNames[static_cast<std::size_t>(fault.verdict)], printable(fault.why), printable(fault.command),
+             repeatCommand(ground, fault));
 }
 
 void keep(const Ground& ground, const Fault& fault) {
-  std::ofstream(ground.out / "faults.txt", std::ios::app)
-      << fmt::format("{}\t{}\t{}\t{}\t{}\n", fault.row, fault.number, kVerdictNames[static_cast<std::size_t>(fault.verdict)],
-                     printable(fault.why), printable(fault.command));
+  std::ofstream(ground.out / "faults.txt", std::ios::app) << fmt::format(
+      "{}\t{}\t{}\t{}\t{}\n", fault.row, fault.number, kVerdictNames[static_cast<std::size_t>(fault.verdict)],
+      printable(fault.why), printable(fault.command));
 }
 
 void runCase(const Row& row, const Ground& ground, int number, Tally& tally) {
@@ -76,19 +78,21 @@ Tally runRow(const Row& row, const Ground& ground, const Asked& asked) {
 
 std::string line(const Row& row, const Tally& t) {
   const auto of = [&](Verdict v) { return t.counts[static_cast<std::size_t>(v)]; };
-  return fmt::format("{:<20} {:>8} {:>8} {:>8} {:>7} {:>7} {:>5} {:>5} {:>5} {:>7.1f}  {}", row.name, t.runs, of(Verdict::kFine),
-                     of(Verdict::kRefused), of(Verdict::kStopped), of(Verdict::kCrashed), of(Verdict::kHung), of(Verdict::kLost),
-                     of(Verdict::kWrong), t.seconds, t.faults.empty() ? "ok" : "FAIL");
+  return fmt::format("{:<20} {:>8} {:>8} {:>8} {:>7} {:>7} {:>5} {:>5} {:>5} {:>7.1f}  {}", row.name, t.runs,
+                     of(Verdict::kFine), of(Verdict::kRefused), of(Verdict::kStopped), of(Verdict::kCrashed),
+                     of(Verdict::kHung), of(Verdict::kLost), of(Verdict::kWrong), t.seconds,
+                     t.faults.empty() ? "ok" : "FAIL");
 }
 
-const std::string kHead = fmt::format("{:<20} {:>8} {:>8} {:>8} {:>7} {:>7} {:>5} {:>5} {:>5} {:>7}", "row", "runs", "fine", "refused",
-                                      "stopped", "crashed", "hung", "lost", "wrong", "s");
+const std::string kHead = fmt::format("{:<20} {:>8} {:>8} {:>8} {:>7} {:>7} {:>5} {:>5} {:>5} {:>7}", "row", "runs",
+                                      "fine", "refused", "stopped", "crashed", "hung", "lost", "wrong", "s");
 
 std::string record(const Row& row, const Tally& t) {
   std::string counts;
-  for (std::size_t i = 0; i < t.counts.size(); ++i) counts += fmt::format(", \"{}\": {}", kVerdictNames[i], t.counts[i]);
-  return fmt::format("  {{\"name\": \"{}\", \"what\": \"{}\", \"runs\": {}{}, \"seconds\": {:.1f}, \"ok\": {}}}", row.name, row.what,
-                     t.runs, counts, t.seconds, t.faults.empty());
+  for (std::size_t i = 0; i < t.counts.size(); ++i)
+    counts += fmt::format(", \"{}\": {}", kVerdictNames[i], t.counts[i]);
+  return fmt::format("  {{\"name\": \"{}\", \"what\": \"{}\", \"runs\": {}{}, \"seconds\": {:.1f}, \"ok\": {}}}",
+                     row.name, row.what, t.runs, counts, t.seconds, t.faults.empty());
 }
 
 int runRows(Ground ground, const Asked& asked) {
@@ -127,7 +131,8 @@ bool devicesAreAttached(const Ground& ground) {
 void requireKnown(const std::vector<std::string>& only) {
   for (const std::string& name : only) {
     const auto is_it = [&](const Row& row) { return row.name == name; };
-    if (std::none_of(rows().begin(), rows().end(), is_it)) throw CLI::ValidationError("--only", "there is no row " + name + "; see --list");
+    if (std::none_of(rows().begin(), rows().end(), is_it))
+      throw CLI::ValidationError("--only", "there is no row " + name + "; see --list");
   }
 }
 
@@ -136,8 +141,9 @@ void requireKnown(const std::vector<std::string>& only) {
 
 int main(int argc, char** argv) {
   using namespace pincer::campaign;
-  CLI::App app("Does to pincer what users, disks and other programs' files do at their worst, and counts what came of it.",
-               "tests/campaign/run");
+  CLI::App app(
+      "Does to pincer what users, disks and other programs' files do at their worst, and counts what came of it.",
+      "tests/campaign/run");
   Ground ground;
   Asked asked;
   bool list = false;
@@ -156,7 +162,8 @@ int main(int argc, char** argv) {
   app.add_flag("--json", asked.json, "The table as JSON");
   app.add_flag("--list", list, "Only the rows' names and what they do");
   app.footer(
-      "\nExit code 1 if a row fails. What failed stays in --out, with the command that repeats it.\n\nExamples:\n  tests/campaign/run\n"
+      "\nExit code 1 if a row fails. What failed stays in --out, with the command that repeats it.\n\nExamples:\n  "
+      "tests/campaign/run\n"
       "  tests/campaign/run --only scenes kills --times 10\n");
   try {
     app.parse(argc, argv);

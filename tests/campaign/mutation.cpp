@@ -11,9 +11,13 @@ using Tokens = std::vector<std::string>;
 constexpr std::size_t kHugeKey = 5'000'000;  // [bytes] of a name that somebody may compare with all others
 constexpr std::size_t kDeep = 200'000;       // brackets: more than a stack of 8 MB holds, if each costs a call
 
-std::size_t below(RandomNumbers& random, std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random.bits() % n); }
+std::size_t below(RandomNumbers& random, std::size_t n) {
+  return n == 0 ? 0 : static_cast<std::size_t>(random.bits() % n);
+}
 
-const std::string& anyOf(RandomNumbers& random, const Tokens& choices) { return choices[below(random, choices.size())]; }
+const std::string& anyOf(RandomNumbers& random, const Tokens& choices) {
+  return choices[below(random, choices.size())];
+}
 
 bool isNumber(const std::string& token) {
   return !token.empty() && (std::isdigit(static_cast<unsigned char>(token.back())) != 0) && token[0] != '"';
@@ -21,7 +25,9 @@ bool isNumber(const std::string& token) {
 bool isBlank(const std::string& token) { return token.find_first_not_of(" \t\r\n") == token.npos; }
 bool isString(const std::string& token) { return token.size() > 1 && token[0] == '"'; }
 
-bool belongsToWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '+' || c == '-'; }
+bool belongsToWord(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '+' || c == '-';
+}
 bool belongsToBlank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
 std::size_t endOfString(const std::string& text, std::size_t at) {
@@ -106,7 +112,9 @@ std::string strangeValue(RandomNumbers& random) {
   return anyOf(random, kStrange);
 }
 
-std::string hugeName(RandomNumbers& random) { return '"' + std::string(random.below(4) == 0 ? kHugeKey : 10'000, 'k') + '"'; }
+std::string hugeName(RandomNumbers& random) {
+  return '"' + std::string(random.below(4) == 0 ? kHugeKey : 10'000, 'k') + '"';
+}
 
 std::string nested(RandomNumbers& random) {
   const std::size_t depth = random.below(2) == 0 ? kDeep : 300;
@@ -116,7 +124,9 @@ std::string nested(RandomNumbers& random) {
 }
 
 void harmJsonToken(RandomNumbers& random, Tokens& tokens) {
-  const auto value = [](const std::string& token) { return isNumber(token) || isString(token) || token == "true" || token == "false"; };
+  const auto value = [](const std::string& token) {
+    return isNumber(token) || isString(token) || token == "true" || token == "false";
+  };
   const std::size_t at = placeOf(random, tokens, random.below(3) == 0 ? isString : value);
   if (at == tokens.size()) return;
   switch (random.below(8)) {
@@ -133,7 +143,8 @@ void harmJsonToken(RandomNumbers& random, Tokens& tokens) {
       tokens.erase(tokens.begin() + static_cast<std::ptrdiff_t>(at));
       break;
     case 4:
-      if (isString(tokens[at])) tokens[at].insert(1 + below(random, tokens[at].size() - 1), random.below(2) == 0 ? "x" : "\xff\xfe");
+      if (isString(tokens[at]))
+        tokens[at].insert(1 + below(random, tokens[at].size() - 1), random.below(2) == 0 ? "x" : "\xff\xfe");
       break;
     case 5:
       if (isString(tokens[at])) tokens[at].insert(1, "\x1b[31m\x07");
@@ -212,7 +223,8 @@ std::string mutatedBytes(RandomNumbers& random, std::string bytes) {
     case 3:
       return bytes.insert(at, std::string(1 + below(random, 16), random.below(2) == 0 ? '\0' : '\xff'));
     default:
-      for (int n = 1 + random.below(8); n > 0; --n) bytes[below(random, bytes.size())] ^= static_cast<char>(1 << random.below(8));
+      for (int n = 1 + random.below(8); n > 0; --n)
+        bytes[below(random, bytes.size())] ^= static_cast<char>(1 << random.below(8));
       return bytes;
   }
 }

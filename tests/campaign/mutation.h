@@ -18,10 +18,12 @@ const std::vector<std::string>& extremeNumbers();
 // Bytes flipped, cut off, doubled, left out, put in.
 std::string mutatedBytes(RandomNumbers& random, std::string bytes);
 
-// Of a text with numbers (tables, meshes): tokens exchanged, numbers at their extremes, lines doubled or left out; or as bytes.
+// Of a text with numbers (tables, meshes): tokens exchanged, numbers at their
+// extremes, lines doubled or left out; or as bytes.
 std::string mutatedText(RandomNumbers& random, const std::string& text);
 
-// Of JSON: besides these, values of other types, keys doubled, renamed and huge, deep nesting, escapes, a byte order mark.
+// Of JSON: besides these, values of other types, keys doubled, renamed and huge,
+// deep nesting, escapes, a byte order mark.
 std::string mutatedJson(RandomNumbers& random, const std::string& text);
 
 }  // namespace pincer::campaign

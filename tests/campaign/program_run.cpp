@@ -88,7 +88,8 @@ void setLimits(const Launch& l) {
   setUp(0, l.in, "");
   setUp(1, l.out, l.log / "stdout");
   setUp(2, l.error, l.log / "stderr");
-  for (const auto& [name, value] : l.environment) value ? ::setenv(name.c_str(), value->c_str(), 1) : ::unsetenv(name.c_str());
+  for (const auto& [name, value] : l.environment)
+    value ? ::setenv(name.c_str(), value->c_str(), 1) : ::unsetenv(name.c_str());
   setLimits(l);
   closeStreams(l);
   ::execvp(arguments[0], arguments.data());
@@ -117,7 +118,8 @@ bool awaitEnd(int handle, double until) {
 
 std::string quoted(const std::string& text) {
   const bool plain =
-      !text.empty() && text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:") == text.npos;
+      !text.empty() &&
+      text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:") == text.npos;
   if (plain) return text;
   std::string out = "$'";
   for (const char c : text.substr(0, 300)) {

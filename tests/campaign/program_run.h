@@ -1,7 +1,8 @@
-// program_run: one run of a program as a black box: its arguments, surroundings and limits go in; how it ended and what it said come out.
+// program_run: one run of a program as a black box: its arguments, surroundings and limits go
+// in; how it ended and what it said come out.
 //
-// The program leads a process group of its own, so that what it started ends with it. Over its time limit it is asked to stop by a signal;
-// if it hasn't ended `grace` seconds later, it is killed and counts as hung.
+// The program leads a process group of its own, so that what it started ends with it. Over its time limit it is asked
+// to stop by a signal; if it hasn't ended `grace` seconds later, it is killed and counts as hung.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -20,9 +21,9 @@ struct Blow {
 
 struct Launch {
   std::string program;
-  std::vector<std::string> arguments;                                           // without the program's name
-  std::filesystem::path folder;                                                 // where it runs
-  std::filesystem::path log;                                                    // folder for what it says: files stdout, stderr
+  std::vector<std::string> arguments;  // without the program's name
+  std::filesystem::path folder;        // where it runs
+  std::filesystem::path log;           // folder for what it says: files stdout, stderr
   std::vector<std::pair<std::string, std::optional<std::string>>> environment;  // set, or unset where there is no value
   Stream in = Stream::kNothing, out = Stream::kKept, error = Stream::kKept;
   double limit = 10;              // [s]

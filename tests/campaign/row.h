@@ -1,5 +1,5 @@
-// row: one kind of harm that the campaign does, over and over. Each case draws what it does from (seed, row, number) and nothing else, so that
-// a case can be repeated alone.
+// row: one kind of harm that the campaign does, over and over. Each case draws what it does from (seed, row, number)
+// and nothing else, so that a case can be repeated alone.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -19,7 +19,8 @@ using tests::RandomNumbers;
 
 // How a run ended, or what was wrong with it.
 enum class Verdict { kFine, kRefused, kStopped, kCrashed, kHung, kLost, kWrong };
-inline constexpr std::array<const char*, 7> kVerdictNames = {"fine", "refused", "stopped", "crashed", "hung", "lost", "wrong"};
+inline constexpr std::array<const char*, 7> kVerdictNames = {"fine", "refused", "stopped", "crashed",
+                                                             "hung", "lost",    "wrong"};
 inline bool isFault(Verdict v) { return v >= Verdict::kCrashed; }
 
 struct Fault {

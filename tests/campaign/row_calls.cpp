@@ -1,4 +1,5 @@
-// Calls of the operating system that fail, allocations that fail. Then: a sentence, nothing half-made, and what was finished is there.
+// Calls of the operating system that fail, allocations that fail. Then: a sentence, nothing
+// half-made, and what was finished is there.
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -19,7 +20,9 @@ const Work& draw(Case& c, const std::vector<Work>& all) {
 }
 
 // Evenly on a logarithmic scale, 1 .. most: the first calls, and then ever fewer.
-long drawNumber(Case& c, long most) { return static_cast<long>(std::exp(c.random.uniform(0, std::log(static_cast<double>(most) + 1)))); }
+long drawNumber(Case& c, long most) {
+  return static_cast<long>(std::exp(c.random.uniform(0, std::log(static_cast<double>(most) + 1))));
+}
 
 // The failures that are most frequent: of a full disk, of a table of files that is full.
 int usualErrorOf(const std::string& call) {

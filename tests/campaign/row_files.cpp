@@ -8,10 +8,13 @@
 namespace pincer::campaign {
 namespace {
 
-constexpr double kPatience = 5;  // [s] for what takes milliseconds if the file is sound; then it is asked to stop, and must
+// [s] for what takes milliseconds if the file is sound; then it is asked to stop, and must
+constexpr double kPatience = 5;
 
 // Behind a NUL no reader may stop and be content.
-std::set<int> codesFor(const std::string& text) { return text.find('\0') == text.npos ? std::set{0, 1, 2, 3, 4, 5} : std::set{3}; }
+std::set<int> codesFor(const std::string& text) {
+  return text.find('\0') == text.npos ? std::set{0, 1, 2, 3, 4, 5} : std::set{3};
+}
 
 Launch shortly(Launch launch) {
   launch.limit = kPatience;
@@ -49,7 +52,8 @@ void harmTrajectory(Case& c) {
   fs::copy_file(trajectoryScene(c.ground), c.folder / "scene.json");
   const std::string text = mutatedText(c.random, readFile(trajectoryTable(c.ground)));
   c.write("trajectory.csv", text);
-  c.run(shortly(c.pincer({"sim", "scene.json", "--duration", "0.05"})), {.name = "trajectory.csv", .codes = codesFor(text)});
+  c.run(shortly(c.pincer({"sim", "scene.json", "--duration", "0.05"})),
+        {.name = "trajectory.csv", .codes = codesFor(text)});
 }
 
 void harmMesh(Case& c) {
@@ -60,14 +64,16 @@ void harmMesh(Case& c) {
   const std::vector<std::vector<std::string>> ways = {
       {"mesh", "info", name, "--units", "cm"},
       {"mesh", "check", name, "--units", "cm"},
-      {"mesh", "convert", name, "out" + c.anyOf(std::vector<std::string>{".obj", ".stl", ".ply", ".off"}), "--units", "cm"},
+      {"mesh", "convert", name, "out" + c.anyOf(std::vector<std::string>{".obj", ".stl", ".ply", ".off"}), "--units",
+       "cm"},
       {"mesh", "convert", name, "out.obj", "--units", "cm", "--repair", "--weld", "0.01", "--fill-holes", "1000"},
       {"mesh", "round-edges", name, "out.ply", "--units", "cm"},
       {"mesh", "simplify", name, "out.ply", "--units", "cm"},
       {"mesh", "subdivide", name, "out.obj", "--units", "cm"},
-      {"run", "sphere-pickup", "--object", name, "--units", "cm", "--repetitions", "1", "--friction", "0.9", "--no-report", "--out",
-       "out"}};
-  Launch launch = shortly(c.pincer(c.chance(0.05) ? ways.back() : ways[static_cast<std::size_t>(c.below(ways.size() - 1))]));
+      {"run", "sphere-pickup", "--object", name, "--units", "cm", "--repetitions", "1", "--friction", "0.9",
+       "--no-report", "--out", "out"}};
+  Launch launch =
+      shortly(c.pincer(c.chance(0.05) ? ways.back() : ways[static_cast<std::size_t>(c.below(ways.size() - 1))]));
   c.run(launch, {.name = name});
 }
 
@@ -79,8 +85,9 @@ void harmDeviceFile(Case& c) {
   }
   c.write("recording.csv", mutatedText(c.random, readFile(recordingFile(c.ground))));
   // An accepted recording runs by the wall clock: half a second of it is enough.
-  Launch launch = c.pincer({"run", "sphere-pickup", "--devices", "replay", "--recording", "recording.csv", "--yes", "--repetitions", "1",
-                            "--friction", "0.9", "--condition", "force", "--no-report", "--out", "out"});
+  Launch launch =
+      c.pincer({"run", "sphere-pickup", "--devices", "replay", "--recording", "recording.csv", "--yes", "--repetitions",
+                "1", "--friction", "0.9", "--condition", "force", "--no-report", "--out", "out"});
   launch.limit = 0.2;
   c.run(launch, {.name = ""});
 }

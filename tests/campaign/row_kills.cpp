@@ -1,4 +1,5 @@
-// Ends that nobody chose: kill -9, two programs on one session, signals. Finished trials must be there, each once, as if nothing had been.
+// Ends that nobody chose: kill -9, two programs on one session, signals. Finished trials must be
+// there, each once, as if nothing had been.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -14,7 +15,8 @@ void killSession(Case& c) {
   const fs::path session = c.folder / "out/session.db";
   Launch launch = c.pincer(pickupArguments("out"));
   // Every third one in the first 30 ms, where the session is being made.
-  launch.blow = Blow{SIGKILL, c.number % 3 == 0 ? c.random.uniform(0, 0.03) : c.random.uniform(0, c.ground.session_time)};
+  launch.blow =
+      Blow{SIGKILL, c.number % 3 == 0 ? c.random.uniform(0, 0.03) : c.random.uniform(0, c.ground.session_time)};
   if (c.runUnjudged(launch).struck) c.hit();
   SessionState before = stateOf(session);
   if (before.readable && before.state == "running" && c.chance(0.5)) {
@@ -35,7 +37,8 @@ void runTwoPrograms(Case& c) {
     Launch launch = c.pincer(pickupArguments("out"));
     launch.blow = Blow{SIGKILL, 0.4 * c.ground.session_time};
     c.runUnjudged(launch);
-    if (stateOf(session).state != "running") return c.count(Verdict::kFine, 0);  // a quick machine: nothing is left to go on with
+    // a quick machine: nothing is left to go on with
+    if (stateOf(session).state != "running") return c.count(Verdict::kFine, 0);
   }
   Launch first = c.pincer(both_resume ? resumedPickup("out") : pickupArguments("out"));
   first.log += "-first";
@@ -47,8 +50,8 @@ void runTwoPrograms(Case& c) {
   c.count(Verdict::kFine);
   const int wins = (one.exit_code == 0 && one.signal == 0) + (second.exit_code == 0 && second.signal == 0);
   if (wins != 1)
-    c.fault(Verdict::kWrong,
-            fmt::format("{} of two programs ran the session: exit codes {} and {}", wins, one.exit_code, second.exit_code));
+    c.fault(Verdict::kWrong, fmt::format("{} of two programs ran the session: exit codes {} and {}", wins,
+                                         one.exit_code, second.exit_code));
   requireWhole(c);
 }
 

@@ -1,4 +1,5 @@
-// Names that would do something where they come out: in a terminal, a shell, a spreadsheet, a page, a BIDS data set, a plot.
+// Names that would do something where they come out: in a terminal, a shell, a
+// spreadsheet, a page, a BIDS data set, a plot.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -132,12 +133,13 @@ void fileWith(Case& c, std::string text) {
   const int way = c.below(6);
   const bool mesh = way < 3;
   const std::string file = text + (mesh ? ".obj" : ".json");
-  fs::copy_file(mesh ? c.ground.inputs() / "meshes/cube.obj" : c.ground.inputs() / "scenes/s4_pinch.json", c.folder / file);
+  fs::copy_file(mesh ? c.ground.inputs() / "meshes/cube.obj" : c.ground.inputs() / "scenes/s4_pinch.json",
+                c.folder / file);
   const std::string in = "./" + file;
   if (way == 0) c.run(c.pincer({"mesh", "convert", in, "./" + text + ".stl", "--units", "cm", "--repair"}));
   if (way == 1)
-    c.run(c.pincer({"run", "sphere-pickup", "--object", in, "--size", "0.04", "--repetitions", "1", "--friction", "0.9", "--condition",
-                    "force", "--sample-rate", "10", "--out", "./" + text}));
+    c.run(c.pincer({"run", "sphere-pickup", "--object", in, "--size", "0.04", "--repetitions", "1", "--friction", "0.9",
+                    "--condition", "force", "--sample-rate", "10", "--out", "./" + text}));
   if (way == 2) c.run(c.pincer({"mesh", "info", in, "--units", "m"}));
   if (way == 3) c.run(c.pincer({"sim", in, "--duration", "0.05", "--out", "./" + text + ".csv"}));
   if (way == 4) c.run(c.pincer({"sweep", in, "--vary", "duration=0.01,0.02", "--out", "./" + text}));

@@ -12,8 +12,9 @@ namespace {
 
 // Texts that no option takes which wants a number.
 const std::set<std::string>& noNumbers() {
-  static const std::set<std::string> kNone = {" ",    "abc",  "%s%n%n", "NaN", "nan", "inf", "-inf",  "null",   "{}",
-                                              "=1+1", "a\nb", ".",      "/",   "1e",  "--1", "1e309", "-1e309", "1e999"};
+  static const std::set<std::string> kNone = {" ",    "abc",  "%s%n%n", "NaN",   "nan",    "inf",
+                                              "-inf", "null", "{}",     "=1+1",  "a\nb",   ".",
+                                              "/",    "1e",   "--1",    "1e309", "-1e309", "1e999"};
   return kNone;
 }
 
@@ -114,11 +115,13 @@ void harmPositional(std::vector<std::string>& arguments, const Command& command,
   }
 }
 
-void harmOption(std::vector<std::string>& arguments, const Option& option, std::size_t value, const std::string& extreme) {
+void harmOption(std::vector<std::string>& arguments, const Option& option, std::size_t value,
+                const std::string& extreme) {
   const auto add = [&](std::initializer_list<std::string> more) { arguments.insert(arguments.end(), more); };
   if (value < absurdValues().size()) {
     removeOption(arguments, option);
-    return option.type.empty() ? add({option.name + "=" + absurdValues()[value]}) : add({option.name, absurdValues()[value]});
+    return option.type.empty() ? add({option.name + "=" + absurdValues()[value]})
+                               : add({option.name, absurdValues()[value]});
   }
   switch (value - absurdValues().size()) {
     case 0:
@@ -135,7 +138,8 @@ void harmOption(std::vector<std::string>& arguments, const Option& option, std::
 }
 
 bool isUsage(const Option& option, const std::string& value) {
-  const bool wants_number = option.type.starts_with("INT") || option.type.starts_with("UINT") || option.type.starts_with("FLOAT");
+  const bool wants_number =
+      option.type.starts_with("INT") || option.type.starts_with("UINT") || option.type.starts_with("FLOAT");
   return wants_number && noNumbers().contains(value);
 }
 
@@ -156,7 +160,8 @@ void harmCommandLine(Case& c) {
   Launch launch = c.pincer(arguments);
   launch.limit = 0.3;  // what was taken runs, and is asked to stop
   Expect expect;
-  if (harm.option < options && harm.value < absurdValues().size() && isUsage(command.options[harm.option], absurdValues()[harm.value]))
+  if (harm.option < options && harm.value < absurdValues().size() &&
+      isUsage(command.options[harm.option], absurdValues()[harm.value]))
     expect.codes = {2};
   c.run(launch, expect);
 }

@@ -1,4 +1,5 @@
-// Sessions that something went through: columns of other types and ranges, bytes flipped, files cut off. Then all that reads sessions.
+// Sessions that something went through: columns of other types and ranges, bytes flipped,
+// files cut off. Then all that reads sessions.
 #include <fmt/format.h>
 
 #include "pincer/tests/campaign/inputs.h"
@@ -66,8 +67,8 @@ struct Damage {
 // A sample, and what is known of hands, has dozens of columns of numbers that are read by the same code: some of them.
 bool isOneOfMany(const Column& column) {
   const bool many = column.table == "sample" || column.table == "hands";
-  return many &&
-         (column.name.starts_with("f1_") || column.name.find("_y") != std::string::npos || column.name.find("_z") != std::string::npos);
+  return many && (column.name.starts_with("f1_") || column.name.find("_y") != std::string::npos ||
+                  column.name.find("_z") != std::string::npos);
 }
 
 const std::vector<Damage>& damages(const Ground& ground) {
@@ -85,7 +86,8 @@ const std::vector<Damage>& damages(const Ground& ground) {
 
 // Runs the commands that read sessions. The tables are quick; of what takes longer one is drawn.
 void readSession(Case& c, const std::string& task, const std::set<int>& export_codes = {0, 3}) {
-  std::vector<std::vector<std::string>> readers = {{"export", "session.db", "--out", "csv"}, {"export", "session.db", "--bids", "bids"}};
+  std::vector<std::vector<std::string>> readers = {{"export", "session.db", "--out", "csv"},
+                                                   {"export", "session.db", "--bids", "bids"}};
   if (c.chance(0.15)) {
     readers.push_back({"report", "session.db", "--json"});
   } else if (c.chance(0.5)) {
@@ -97,7 +99,8 @@ void readSession(Case& c, const std::string& task, const std::set<int>& export_c
     Launch launch = c.pincer(arguments);
     launch.limit = 20;
     Expect expect{.name = "session.db"};
-    if (arguments[0] == "export" && arguments[2] == "--out") expect.codes = export_codes;  // the tables: every column is read
+    // the tables: every column is read
+    if (arguments[0] == "export" && arguments[2] == "--out") expect.codes = export_codes;
     c.run(launch, expect);
   }
 }
@@ -111,7 +114,8 @@ void damageColumn(Case& c) {
   const bool killed = d.kind.session == pickupSession && c.chance(0.3);
   const fs::path from = killed ? killedSession(c.ground) : d.kind.session(c.ground);
   for (const char* suffix : {"", "-wal"}) {
-    if (fs::exists(from.string() + suffix)) fs::copy_file(from.string() + suffix, c.folder / ("session.db" + std::string(suffix)));
+    if (fs::exists(from.string() + suffix))
+      fs::copy_file(from.string() + suffix, c.folder / ("session.db" + std::string(suffix)));
   }
   const std::string type = damage(c.folder / "session.db", d.column, wrongValues()[d.value], c.chance(0.5));
   const bool is_number = d.column.type == "INTEGER" || d.column.type == "REAL";
@@ -126,7 +130,8 @@ void damageSessionFile(Case& c) {
   for (int n = 1 + c.below(4); n > 0; --n) bytes = mutatedBytes(c.random, bytes);
   if (c.chance(0.5)) bytes.replace(0, 16, "SQLite format 3", 16);
   c.write("session.db", bytes);
-  if (c.chance(0.3)) c.write("session.db-wal", mutatedBytes(c.random, readFile(killedSession(c.ground).string() + "-wal")));
+  if (c.chance(0.3))
+    c.write("session.db-wal", mutatedBytes(c.random, readFile(killedSession(c.ground).string() + "-wal")));
   readSession(c, kind.task);
 }
 

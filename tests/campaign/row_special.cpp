@@ -92,7 +92,9 @@ const std::vector<Reader>& readers() {
       {"session.db", {"run", "sphere-pickup", "--resume", "--out", "."}, ""},
       {"in.csv", {"run", "sphere-pickup", "--devices", "replay", "--recording", "in.csv", "--yes", "--out", "out"}, ""},
       {"in.json", {"devices", "calibrate", "NONE", "--load", "in.json"}, ""},
-      {"in.json", {"run", "sphere-pickup", "--devices", "usb", "--calibration", "in.json", "--yes", "--out", "out"}, ""},
+      {"in.json",
+       {"run", "sphere-pickup", "--devices", "usb", "--calibration", "in.json", "--yes", "--out", "out"},
+       ""},
       {"in.bin", {"run", "sphere-pickup", "--devices", "falcon", "--firmware", "in.bin", "--yes", "--out", "out"}, ""},
   };
   return kReaders;
@@ -106,7 +108,8 @@ void useSpecialFile(Case& c) {
   const std::size_t which = scattered(c.ground, c.number, specials().size() * readers().size());
   const Special& special = specials()[which % specials().size()];
   const Reader& reader = readers()[which / specials().size()];
-  if (*reader.beside != '\0') fs::copy_file(c.ground.inputs() / reader.beside, c.folder / fs::path(reader.beside).filename());
+  if (*reader.beside != '\0')
+    fs::copy_file(c.ground.inputs() / reader.beside, c.folder / fs::path(reader.beside).filename());
   special.make(c.folder / reader.file);
   Launch launch = c.pincer(reader.arguments);
   launch.limit = 4;

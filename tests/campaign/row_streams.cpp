@@ -1,4 +1,5 @@
-// Where the program writes: standard streams closed, full, cut off; links planted at names that it might write through; full disks.
+// Where the program writes: standard streams closed, full, cut off; links planted at names
+// that it might write through; full disks.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sched.h>
@@ -59,7 +60,9 @@ const std::vector<Streams>& streams() {
   return kStreams;
 }
 
-bool isSession(const std::vector<std::string>& arguments) { return arguments[0] == "run" && arguments[1] == "sphere-pickup"; }
+bool isSession(const std::vector<std::string>& arguments) {
+  return arguments[0] == "run" && arguments[1] == "sphere-pickup";
+}
 
 // A session is whole or can be made so; a file that stands under its name isn't empty.
 void requireOutputs(Case& c, const std::vector<std::string>& arguments) {
@@ -73,10 +76,12 @@ void requireOutputs(Case& c, const std::vector<std::string>& arguments) {
 constexpr const char* kPrecious = "This file belongs to somebody else.\n";
 
 void requirePrecious(Case& c, const fs::path& file) {
-  if (readFile(file) != kPrecious) c.fault(Verdict::kLost, "a file of somebody else was written through a planted link");
+  if (readFile(file) != kPrecious)
+    c.fault(Verdict::kLost, "a file of somebody else was written through a planted link");
 }
 
-// Calls `act` in a mount namespace of its own, where `folder` is a file system of so many bytes. False where that isn't allowed.
+// Calls `act` in a mount namespace of its own, where `folder` is a file system of so
+// many bytes. False where that isn't allowed.
 template <class Act>
 bool onSmallDisk(const fs::path& folder, long bytes, Act act) {
   const int mine = ::open("/proc/self/ns/mnt", O_RDONLY | O_CLOEXEC);
@@ -123,7 +128,8 @@ void plantLinks(Case& c) {
   if (into_parts) {
     for (std::string& name : names) name += ".part";
   }
-  // Into the output's own place only a broken link or a loop is planted: to write through a link that the user made is the user's wish.
+  // Into the output's own place only a broken link or a loop is planted: to write through a
+  // link that the user made is the user's wish.
   for (const std::string& name : names) {
     if (into_parts) fs::create_symlink(precious, c.folder / name);
     if (!into_parts) fs::create_symlink("nowhere/at-all", c.folder / name);

@@ -54,7 +54,8 @@ void makeLocales(const fs::path& folder) {
   static const bool once = [&] {
     fs::create_directories(folder);
     for (const char* name : {"de_DE", "ar_SA"}) {
-      const std::string line = fmt::format("localedef -f UTF-8 -i {0} '{1}/{0}.UTF-8' > /dev/null 2>&1", name, folder.string());
+      const std::string line =
+          fmt::format("localedef -f UTF-8 -i {0} '{1}/{0}.UTF-8' > /dev/null 2>&1", name, folder.string());
       if (std::system(line.c_str()) != 0) continue;  // then the locale doesn't exist: that has to be borne as well
     }
     return true;
@@ -98,8 +99,9 @@ const std::string& usualOutput(Case& c, std::size_t program) {
 }
 
 const std::vector<std::string>& tunings() {
-  static const std::vector<std::string> kTunings = {"glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-AVX", "glibc.cpu.hwcaps=-FMA,-FMA4",
-                                                    "glibc.cpu.hwcaps=-AVX2", "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-AVX,-SSE4_1,-SSE4_2"};
+  static const std::vector<std::string> kTunings = {"glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-AVX",
+                                                    "glibc.cpu.hwcaps=-FMA,-FMA4", "glibc.cpu.hwcaps=-AVX2",
+                                                    "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F,-AVX,-SSE4_1,-SSE4_2"};
   return kTunings;
 }
 
@@ -113,10 +115,12 @@ void compareGoldenStates(Case& c, const std::string& tuning) {
   const Ended tuned = c.run(launch, {.codes = {0}});
   c.count(Verdict::kFine, 0);
   if (tuned.out != usual.out)
-    c.fault(Verdict::kWrong, fmt::format("golden state {} here, {} there", usual.out.substr(0, 40), tuned.out.substr(0, 40)));
+    c.fault(Verdict::kWrong,
+            fmt::format("golden state {} here, {} there", usual.out.substr(0, 40), tuned.out.substr(0, 40)));
 }
 
-void compareSessions(Case& c, const std::string& tuning, const std::vector<std::string>& arguments, const fs::path& usual) {
+void compareSessions(Case& c, const std::string& tuning, const std::vector<std::string>& arguments,
+                     const fs::path& usual) {
   Launch launch = c.pincer(arguments);
   launch.limit = 60;
   launch.environment.emplace_back("GLIBC_TUNABLES", tuning);
@@ -150,7 +154,8 @@ void changeSurroundings(Case& c) {
     launch.environment.emplace_back(name, value);
   }
   // A report needs a place for its plots: it says so, and does nothing.
-  const bool no_place = surroundings()[which % surroundings().size()][0].first == "TMPDIR" && programs(c.ground)[program][0] == "report";
+  const bool no_place =
+      surroundings()[which % surroundings().size()][0].first == "TMPDIR" && programs(c.ground)[program][0] == "report";
   const Ended ended = c.run(launch, {.name = no_place ? "TMPDIR" : "", .codes = {no_place ? 3 : 0}});
   if (!c.faulty() && !no_place && outputOf(ended, c.folder) != usual)
     c.fault(Verdict::kWrong, "says or writes something else than in usual surroundings");

@@ -1,4 +1,5 @@
-// Bytes over USB, in this process: random and mutated bytes. What is taken for a message must be one: it is told again as the same bytes.
+// Bytes over USB, in this process: random and mutated bytes. What is taken for a message must be
+// one: it is told again as the same bytes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,11 +19,11 @@ constexpr int kExecutions = 100'000;  // per case
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-constexpr FrameType kTypes[] = {FrameType::kIdentify,           FrameType::kArmCommand,       FrameType::kDisplayCommand,
-                                FrameType::kReadCalibration,    FrameType::kWriteCalibration, FrameType::kStop,
-                                FrameType::kIdentity,           FrameType::kArmState,         FrameType::kDisplayState,
-                                FrameType::kCalibration,        FrameType::kStatus,           FrameType::kArmCapabilities,
-                                FrameType::kDisplayCapabilities};
+constexpr FrameType kTypes[] = {
+    FrameType::kIdentify,           FrameType::kArmCommand,  FrameType::kDisplayCommand, FrameType::kReadCalibration,
+    FrameType::kWriteCalibration,   FrameType::kStop,        FrameType::kIdentity,       FrameType::kArmState,
+    FrameType::kDisplayState,       FrameType::kCalibration, FrameType::kStatus,         FrameType::kArmCapabilities,
+    FrameType::kDisplayCapabilities};
 
 // Bytes as they come: mostly small and extreme ones, so that ranges are met from both sides.
 std::uint8_t someByte(RandomNumbers& random) {
@@ -64,9 +65,11 @@ Frame soundFrame(RandomNumbers& random) {
 
 Frame mutatedFrame(RandomNumbers& random) {
   Frame frame = soundFrame(random);
-  for (int n = random.below(4); n > 0; --n) frame.payload[static_cast<std::size_t>(random.below(kPayloadSize))] = someByte(random);
+  for (int n = random.below(4); n > 0; --n)
+    frame.payload[static_cast<std::size_t>(random.below(kPayloadSize))] = someByte(random);
   if (random.below(4) == 0) frame.type = kTypes[random.below(static_cast<int>(std::size(kTypes)))];
-  if (random.below(16) == 0) std::generate(frame.payload.begin(), frame.payload.end(), [&] { return someByte(random); });
+  if (random.below(16) == 0)
+    std::generate(frame.payload.begin(), frame.payload.end(), [&] { return someByte(random); });
   frame.sequence = static_cast<std::uint32_t>(random.bits());
   frame.time_us = random.bits();
   return frame;
@@ -106,11 +109,13 @@ void harmFrames(Case& c) {
     FrameBytes bytes = encode(mutatedFrame(c.random));
     for (int n = c.random.below(3); n > 0; --n)
       bytes[static_cast<std::size_t>(c.random.below(kFrameSize))] ^= static_cast<std::uint8_t>(1 << c.random.below(8));
-    const std::size_t length = c.random.below(8) == 0 ? static_cast<std::size_t>(c.random.below(kFrameSize)) : kFrameSize;
+    const std::size_t length =
+        c.random.below(8) == 0 ? static_cast<std::size_t>(c.random.below(kFrameSize)) : kFrameSize;
     Frame frame;
     if (decode(std::span(bytes).first(length), frame) != FrameError::kNone) continue;
     ++taken;
-    if (encode(frame) != bytes) return c.fault(Verdict::kWrong, fmt::format("execution {}: a frame that is told again differs", i), "");
+    if (encode(frame) != bytes)
+      return c.fault(Verdict::kWrong, fmt::format("execution {}: a frame that is told again differs", i), "");
   }
   add(c, taken, began);
 }
@@ -124,7 +129,8 @@ void harmMessages(Case& c) {
     order.judge(frame.sequence);
     if (!allSurvive(frame, taken)) {
       return c.fault(Verdict::kWrong,
-                     fmt::format("execution {}: a message of type 0x{:02x} that is told again differs", i, static_cast<int>(frame.type)),
+                     fmt::format("execution {}: a message of type 0x{:02x} that is told again differs", i,
+                                 static_cast<int>(frame.type)),
                      "");
     }
   }
@@ -139,7 +145,8 @@ void harmFalconPackets(Case& c) {
   for (int i = 0; i < kExecutions; ++i) {
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(c.random.below(66)));
     std::generate(bytes.begin(), bytes.end(), [&] { return someByte(c.random); });
-    const Packet packet = packetOf({{c.random.below(8192) - 4096, c.random.below(8192) - 4096, 0}, c.random.below(2) == 0, 2});
+    const Packet packet =
+        packetOf({{c.random.below(8192) - 4096, c.random.below(8192) - 4096, 0}, c.random.below(2) == 0, 2});
     if (bytes.size() >= 18)
       std::copy(packet.begin(), packet.end(), bytes.begin() + 2 + c.random.below(static_cast<int>(bytes.size()) - 17));
     if (!bytes.empty() && c.random.below(2) == 0)
@@ -148,7 +155,8 @@ void harmFalconPackets(Case& c) {
     if (!answer) continue;
     ++taken;
     const auto in_range = [](int counts) { return counts >= -32768 && counts <= 32767; };
-    if (!std::all_of(answer->counts.begin(), answer->counts.end(), in_range)) return c.fault(Verdict::kWrong, "counts beyond 16 bits", "");
+    if (!std::all_of(answer->counts.begin(), answer->counts.end(), in_range))
+      return c.fault(Verdict::kWrong, "counts beyond 16 bits", "");
   }
   add(c, taken, began);
 }

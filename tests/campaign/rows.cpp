@@ -4,15 +4,18 @@ namespace pincer::campaign {
 
 const std::vector<Row>& rows() {
   static const std::vector<Row> kRows = {
-      {"options", "every command x every option: absurd, missing, twice, unknown", 500, harmCommandLine, allCommandLines},
+      {"options", "every command x every option: absurd, missing, twice, unknown", 500, harmCommandLine,
+       allCommandLines},
       {"scenes", "scene files: bytes, tokens, numbers, keys, nesting, NUL, huge names; sim, plan", 700, harmScene},
       {"studies", "study files of six experiments, likewise", 400, harmStudy},
       {"trajectories", "trajectory tables", 250, harmTrajectory},
-      {"meshes", "OBJ, STL, PLY, OFF, text and binary; info, check, convert --repair, round-edges, simplify, subdivide", 700, harmMesh},
+      {"meshes", "OBJ, STL, PLY, OFF, text and binary; info, check, convert --repair, round-edges, simplify, subdivide",
+       700, harmMesh},
       {"device-files", "recordings and calibrations", 100, harmDeviceFile},
-      {"special-files", "devices, pipes, folders, loops, 300 MB in place of each input", 320, useSpecialFile, allSpecialFiles},
-      {"session-columns", "every column of every table: other types, ranges, texts; report, export, replay, --resume", 100, damageColumn,
-       allDamagedColumns},
+      {"special-files", "devices, pipes, folders, loops, 300 MB in place of each input", 320, useSpecialFile,
+       allSpecialFiles},
+      {"session-columns", "every column of every table: other types, ranges, texts; report, export, replay, --resume",
+       100, damageColumn, allDamagedColumns},
       {"session-bytes", "session files: bytes flipped, cut off", 50, damageSessionFile},
       {"kills", "kill -9 at any moment, then --resume", 20, killSession},
       {"two-programs", "two programs on one session", 4, runTwoPrograms},

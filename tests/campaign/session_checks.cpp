@@ -10,17 +10,20 @@ void compareTrials(Case& c, const SessionState& before, const SessionState& afte
   for (const auto& [trial, row] : before.trials) {
     const auto found = after.trials.find(trial);
     if (found == after.trials.end()) c.fault(Verdict::kLost, fmt::format("trial {} was finished and is gone", trial));
-    if (found != after.trials.end() && found->second != row) c.fault(Verdict::kLost, fmt::format("trial {} has changed", trial));
+    if (found != after.trials.end() && found->second != row)
+      c.fault(Verdict::kLost, fmt::format("trial {} has changed", trial));
   }
   if (!after.doubled.empty()) c.fault(Verdict::kLost, fmt::format("trial {} stands there twice", after.doubled[0]));
-  if (!before.integrity.empty() && before.readable && before.integrity != "ok") c.fault(Verdict::kLost, "integrity: " + before.integrity);
+  if (!before.integrity.empty() && before.readable && before.integrity != "ok")
+    c.fault(Verdict::kLost, "integrity: " + before.integrity);
 }
 
 void requireWhole(Case& c) {
   const SessionState state = stateOf(c.folder / "out/session.db");
   if (state.state != "complete") c.fault(Verdict::kWrong, "the session is \"" + state.state + "\" after all was run");
   compareTrials(c, stateOf(pickupSession(c.ground)), state);
-  if (state.trials.size() != kPickupTrials) c.fault(Verdict::kLost, fmt::format("{} trials of {}", state.trials.size(), kPickupTrials));
+  if (state.trials.size() != kPickupTrials)
+    c.fault(Verdict::kLost, fmt::format("{} trials of {}", state.trials.size(), kPickupTrials));
 }
 
 void completeSession(Case& c) {
@@ -30,7 +33,8 @@ void completeSession(Case& c) {
     compareTrials(c, before, stateOf(c.folder / "out/session.db"));
     return requireWhole(c);
   }
-  if (before.readable && before.state == "running") return c.fault(Verdict::kLost, "can't be gone on with: " + ended.error);
+  if (before.readable && before.state == "running")
+    return c.fault(Verdict::kLost, "can't be gone on with: " + ended.error);
   if (before.state == "complete") return;  // --resume says that nothing is left
   fs::remove_all(c.folder / "out");
   c.run(c.pincer(pickupArguments("out")), {.codes = {0}});

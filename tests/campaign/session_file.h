@@ -15,14 +15,14 @@ struct Column {
 // Of the tables that have rows.
 std::vector<Column> columnsOf(const fs::path& session);
 
-// Sets the column, in all rows or only in the one in the middle, to an SQL expression such as "NULL", "-1", "'text'", "x'00ff'". Returns the
-// type of what stands there now: "null", "integer", "real", "text", "blob".
+// Sets the column, in all rows or only in the one in the middle, to an SQL expression such as "NULL", "-1", "'text'",
+// "x'00ff'". Returns the type of what stands there now: "null", "integer", "real", "text", "blob".
 std::string damage(const fs::path& session, const Column& column, const std::string& expression, bool all_rows);
 
 // How a session stands, read from a copy: looking changes nothing.
 struct SessionState {
   bool readable = false;
-  std::string state;                           // "running", "complete", "aborted: ..."; empty before the session was made
+  std::string state;  // "running", "complete", "aborted: ..."; empty before the session was made
   std::map<std::int64_t, std::string> trials;  // what was kept of each but how long ticks took; of responses likewise
   std::vector<std::int64_t> doubled;           // trials that stand there more than once
   std::string integrity;                       // "ok", or what SQLite finds wrong

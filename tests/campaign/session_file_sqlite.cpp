@@ -34,7 +34,8 @@ class Store {
       std::vector<std::string> row;
       for (int i = 0; i < sqlite3_column_count(raw); ++i) {
         const auto* bytes = static_cast<const char*>(sqlite3_column_blob(raw, i));
-        row.emplace_back(bytes == nullptr ? "" : bytes, bytes == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(raw, i)));
+        row.emplace_back(bytes == nullptr ? "" : bytes,
+                         bytes == nullptr ? 0 : static_cast<std::size_t>(sqlite3_column_bytes(raw, i)));
       }
       take(row);
     }
@@ -52,10 +53,12 @@ class Store {
 
 std::vector<Column> columnsIn(Store& store) {
   std::vector<Column> columns;
-  store.forEach("SELECT m.name, c.name, c.type FROM sqlite_schema m, pragma_table_info(m.name) c WHERE m.type = 'table' ORDER BY 1, c.cid",
-                [&](const auto& row) {
-                  columns.push_back({row[0], row[1], row[2]});
-                });
+  store.forEach(
+      "SELECT m.name, c.name, c.type FROM sqlite_schema m, pragma_table_info(m.name) c WHERE m.type = 'table' ORDER BY "
+      "1, c.cid",
+      [&](const auto& row) {
+        columns.push_back({row[0], row[1], row[2]});
+      });
   return columns;
 }
 
@@ -75,10 +78,12 @@ std::string keptColumns(const std::vector<Column>& columns, const std::string& t
 }
 
 void addTrials(Store& store, const std::vector<Column>& columns, const std::string& table, SessionState& state) {
-  store.forEach(fmt::format("SELECT {} FROM {} ORDER BY trial", keptColumns(columns, table), table), [&](const auto& row) {
-    const std::int64_t trial = std::stoll(row.at(0));
-    if (!state.trials.emplace(trial, fmt::format("{}", fmt::join(row, "|"))).second) state.doubled.push_back(trial);
-  });
+  store.forEach(fmt::format("SELECT {} FROM {} ORDER BY trial", keptColumns(columns, table), table),
+                [&](const auto& row) {
+                  const std::int64_t trial = std::stoll(row.at(0));
+                  if (!state.trials.emplace(trial, fmt::format("{}", fmt::join(row, "|"))).second)
+                    state.doubled.push_back(trial);
+                });
 }
 
 // A copy with its log, so that looking doesn't fold the log in. Gone at the end.
@@ -105,7 +110,8 @@ std::vector<Column> columnsOf(const fs::path& session) {
   const Copy copy(session);
   Store store(copy.file(), SQLITE_OPEN_READWRITE);
   std::vector<Column> columns = columnsIn(store);
-  std::erase_if(columns, [&](const Column& column) { return store.first("SELECT count(*) FROM " + column.table) == "0"; });
+  std::erase_if(columns,
+                [&](const Column& column) { return store.first("SELECT count(*) FROM " + column.table) == "0"; });
   return columns;
 }
 
@@ -113,7 +119,8 @@ std::string damage(const fs::path& session, const Column& column, const std::str
   Store store(session, SQLITE_OPEN_READWRITE);
   const std::string middle =
       fmt::format(" WHERE rowid = (SELECT rowid FROM {0} LIMIT 1 OFFSET (SELECT count(*) / 2 FROM {0}))", column.table);
-  store.first(fmt::format("UPDATE {} SET \"{}\" = {}{}", column.table, column.name, expression, all_rows ? "" : middle));
+  store.first(
+      fmt::format("UPDATE {} SET \"{}\" = {}{}", column.table, column.name, expression, all_rows ? "" : middle));
   return store.first(fmt::format("SELECT typeof(\"{}\") FROM {}{}", column.name, column.table, middle));
 }
 

@@ -1,8 +1,9 @@
 // verdicts: what a run of the program may do whatever it was given, and what it may not.
 //
 //   It ends by itself, with a documented exit code; if asked to stop, it does.      It never aborts.
-//   A refusal (exit codes 2, 3, 4) is a text on standard error that begins with "pincer: ", names what was refused, and says in a sentence
-//   of its own what to do. No text holds control characters but line ends.         Nothing half-made is left behind.
+//   A refusal (exit codes 2, 3, 4) is a text on standard error that begins with "pincer: ", names what
+//   was refused, and says in a sentence of its own what to do. No text holds control characters but line
+//   ends.         Nothing half-made is left behind.
 #pragma once
 #include <optional>
 #include <string>
@@ -21,7 +22,8 @@ std::optional<Finding> verdictOn(const Launch& launch, const Ended& ended, const
 // The files and folders below `folder`.
 std::set<std::string> filesIn(const fs::path& folder);
 
-// A file of the run's folder that nobody asked for: a part of an output; anything that wasn't there `before` a usage error. Empty if there is none.
+// A file of the run's folder that nobody asked for: a part of an output; anything that wasn't there
+// `before` a usage error. Empty if there is none.
 std::string strayIn(const Launch& launch, const Ended& ended, const std::set<std::string>& before);
 
 // The first control character that a terminal would obey, as text; empty if there is none. `text` is UTF-8.

@@ -1,6 +1,8 @@
-// devices_bench: what `pincer bench devices` shows of USB, measured with emulated devices under the real libusb in this process.
+// devices_bench: what `pincer bench devices` shows of USB, measured with emulated
+// devices under the real libusb in this process.
 //
-//   devices_bench [SECONDS [CYCLES]]     a line per figure: name, metric, value, unit, relation, bound, with tabs between
+//   devices_bench [SECONDS [CYCLES]]     a line per figure: name, metric, value,
+//                                        unit, relation, bound, with tabs between
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +22,8 @@ using devices::usb::UsbHost;
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-void show(const char* name, const char* metric, double value, const char* unit, const char* relation = "<=", double bound = kNoBound) {
+void show(const char* name, const char* metric, double value, const char* unit,
+          const char* relation = "<=", double bound = kNoBound) {
   fmt::print("{}\t{}\t{}\t{}\t{}\t{}\n", name, metric, value, unit, relation, bound);
   std::fflush(stdout);
 }
@@ -32,7 +35,8 @@ class TwoHands final : public tasks::ServoCycle {
  public:
   TwoHands(UsbHost& host, double seconds)
       : host_(host), arms_(host.arms()), displays_(host.displays()), seconds_(seconds), gates_(arms_.size()) {
-    limits_.watchdog_time = 1;  // a shared machine's stalls are counted, not answered: how forces end is measured by itself
+    // a shared machine's stalls are counted, not answered: how forces end is measured by itself
+    limits_.watchdog_time = 1;
   }
   bool tick(double now) override {
     const std::int64_t epoch = devices::usb::monotonicNs() - static_cast<std::int64_t>(1e9 * now);
@@ -120,7 +124,8 @@ void twoHands(double seconds) {
   show("usb/two hands", "tick began late by, 99.9 %", 1e6 * report.lateness.quantile(0.999), "us");
 }
 
-// An arm with a force on, in virtual time: only the bench's clock moves it on, and whatever the USB thread is asked for it does in no time.
+// An arm with a force on, in virtual time: only the bench's clock moves it on, and whatever the
+// USB thread is asked for it does in no time.
 class ForceEnds {
  public:
   ForceEnds() : firmware_(bench_.addArm("A1")), host_(bench_.clock()) { ok_ = findAll(bench_, host_, 1, 0); }
@@ -163,10 +168,13 @@ void endsOfForce() {
   const auto nothing = [](UsbArm&) {};
   show("usb/force ends", "after the last command (a loop that stands still, a dead computer), in virtual time",
        ForceEnds().after(nothing, nothing), "ms", "<=", 5);
-  show("usb/force ends", "after the watchdog's stop, in virtual time", ForceEnds().after([](UsbArm& arm) { arm.stop(); }, nothing), "ms",
-       "<=", 5);
-  const auto notANumber = [](UsbArm& arm) { arm.commandForce(Vec3::Constant(std::numeric_limits<double>::quiet_NaN())); };
-  show("usb/force ends", "after a force that isn't a number, in virtual time", ForceEnds().after(notANumber, notANumber), "ms", "<=", 5);
+  show("usb/force ends", "after the watchdog's stop, in virtual time",
+       ForceEnds().after([](UsbArm& arm) { arm.stop(); }, nothing), "ms", "<=", 5);
+  const auto notANumber = [](UsbArm& arm) {
+    arm.commandForce(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+  };
+  show("usb/force ends", "after a force that isn't a number, in virtual time",
+       ForceEnds().after(notANumber, notANumber), "ms", "<=", 5);
 }
 
 // In real time: pushes, then sticks in a tick for 30 ms.
@@ -240,7 +248,8 @@ void endOfForceAfterAnException() {
     } catch (const std::runtime_error&) {
     }
   };
-  show("usb/force ends", "after an exception in a tick, in virtual time", ForceEnds().after(thrown, [](UsbArm&) {}), "ms", "<=", 5);
+  show("usb/force ends", "after an exception in a tick, in virtual time", ForceEnds().after(thrown, [](UsbArm&) {}),
+       "ms", "<=", 5);
 }
 
 void unplugged() {
@@ -280,7 +289,8 @@ void faults() {
   FaultyServo servo(bench, *firmware, host);
   if (!servo.find()) return showMissing("usb/faults");
   injectFaults(bench, servo, 2 * emulation::kTransferFaults * 40);
-  show("usb/faults", "injected, of 14 kinds in both directions", static_cast<double>(bench.bus.device(0).faultsDone()), "-", ">=", 1000);
+  show("usb/faults", "injected, of 14 kinds in both directions", static_cast<double>(bench.bus.device(0).faultsDone()),
+       "-", ">=", 1000);
   show("usb/faults", "unsound frames believed", servo.unsound(), "-", "==", 0);
   show("usb/faults", "ticks with a stuck force", servo.stuck(), "-", "==", 0);
   show("usb/faults", "so often the operator had to arm again", servo.trips(), "-");

@@ -18,7 +18,8 @@ class UsbCommands : public testing::Test {
   void SetUp() override {
     if (const std::string obstacle = emulation::EmulatedBus::obstacle(); !obstacle.empty()) GTEST_SKIP() << obstacle;
     bus = std::make_unique<emulation::EmulatedBus>();
-    for (const char* serial : {"A1", "A2"}) bus->add(arms.emplace_back(std::make_shared<emulation::ArmFirmware>(serial)));
+    for (const char* serial : {"A1", "A2"})
+      bus->add(arms.emplace_back(std::make_shared<emulation::ArmFirmware>(serial)));
   }
   void TearDown() override {
     if (bus) bus->stopRealTime();
@@ -50,7 +51,8 @@ TEST_F(UsbCommands, DevicesTestKeepsToTheTorquesOfTheJoints) {
       load = std::max(load.load(), (arms[0]->plant().sample().J->transpose() * f_D).cwiseAbs().maxCoeff());
     });
   });
-  const AppResult test = runPincer({"devices", "test", "A1", "--force", "0.5", "--seconds", "1", "--watchdog", "100", "--yes"});
+  const AppResult test =
+      runPincer({"devices", "test", "A1", "--force", "0.5", "--seconds", "1", "--watchdog", "100", "--yes"});
   EXPECT_TRUE(contains(test.out, "pincer emu arm A1")) << test.out << test.error;
   EXPECT_GT(most, 0.02) << "it pushed: " << test.out;
   EXPECT_TRUE(contains(test.out, "Verdict: ") && contains(test.out, "age of a sample")) << test.out;
@@ -60,7 +62,8 @@ TEST_F(UsbCommands, DevicesTestKeepsToTheTorquesOfTheJoints) {
 TEST_F(UsbCommands, CalibrationIsKeptInTheDeviceAndReadByTheNextSession) {
   bus->runInRealTime();
   const std::string file = folder / "A1.json";
-  const AppResult set = runPincer({"devices", "calibrate", "A1", "--set", "base_x=0.012", "--set", "base_turn=-0.1", "--save", file});
+  const AppResult set =
+      runPincer({"devices", "calibrate", "A1", "--set", "base_x=0.012", "--set", "base_turn=-0.1", "--save", file});
   ASSERT_EQ(set.exit_code, 0) << set.error;
   EXPECT_TRUE(contains(set.out, "base_x               0.012")) << set.out;
   EXPECT_EQ(kept(0, kBaseX), 0.012);
@@ -75,7 +78,8 @@ TEST_F(UsbCommands, CalibrationIsKeptInTheDeviceAndReadByTheNextSession) {
   ASSERT_EQ(runPincer({"devices", "calibrate", "A1", "--set", "base_x=0"}).exit_code, 0);
   tasks::DeviceOptions from_file = session();
   from_file.calibrations = {file};
-  EXPECT_EQ(tasks::openHandDevices(from_file)->base(0).offset_W, Vec3(0.012, 0, 0)) << "a file counts over what the arm keeps";
+  EXPECT_EQ(tasks::openHandDevices(from_file)->base(0).offset_W, Vec3(0.012, 0, 0))
+      << "a file counts over what the arm keeps";
   ASSERT_EQ(runPincer({"devices", "calibrate", "A1", "--load", file}).exit_code, 0);
   EXPECT_EQ(kept(0, kBaseX), 0.012);
 }
@@ -84,7 +88,8 @@ TEST_F(UsbCommands, CalibrationIsKeptInTheDeviceAndReadByTheNextSession) {
 TEST_F(UsbCommands, CalibrateNamesWhatIsWrongBeforeItWritesAnything) {
   bus->runInRealTime();
   const auto refused = [&](std::vector<std::string> words, std::initializer_list<const char*> parts) {
-    const bool is_usage = words.front() == "--set" && words.back() != "gain=1";  // that the device has no gain only it knows
+    // that the device has no gain only it knows
+    const bool is_usage = words.front() == "--set" && words.back() != "gain=1";
     const int expected = is_usage ? 2 : 3;
     words.insert(words.begin(), {"devices", "calibrate", "A1", "--set", "base_x=0.5"});
     const AppResult result = runPincer(words);
@@ -106,7 +111,8 @@ TEST_F(UsbCommands, ASessionRefusesAnArmWhoseOwnCalibrationIsOutOfRange) {
   arms[1]->calibration()[kBaseX].second = 40;
   bus->runInRealTime();
   const std::string why = problemOf([&] { tasks::openHandDevices(session()); });
-  EXPECT_TRUE(contains(why, "A2") && contains(why, "base_x = 40") && contains(why, "pincer devices calibrate A2")) << why;
+  EXPECT_TRUE(contains(why, "A2") && contains(why, "base_x = 40") && contains(why, "pincer devices calibrate A2"))
+      << why;
 }
 
 TEST_F(UsbCommands, AnArmThatKeepsNoCalibrationStandsInItsPlace) {

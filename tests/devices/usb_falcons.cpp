@@ -1,4 +1,5 @@
-// Two Novint Falcons on an emulated bus, under the real libusb: found, chosen by port or serial number, loaded with their image, rendering.
+// Two Novint Falcons on an emulated bus, under the real libusb: found, chosen by port or serial
+// number, loaded with their image, rendering.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -21,7 +22,8 @@ class UsbFalcons : public testing::Test {
   void SetUp() override {
     if (const std::string obstacle = emulation::EmulatedBus::obstacle(); !obstacle.empty()) GTEST_SKIP() << obstacle;
     bus = std::make_unique<emulation::EmulatedBus>();
-    for (const char* serial : {"FA", "FB"}) bus->add(falcons.emplace_back(std::make_shared<emulation::FalconGadget>(serial, kImageSize)));
+    for (const char* serial : {"FA", "FB"})
+      bus->add(falcons.emplace_back(std::make_shared<emulation::FalconGadget>(serial, kImageSize)));
     falcons[0]->falcon.counts = -150;
     falcons[1]->falcon.counts = -400;
     bus->runInRealTime();

@@ -1,4 +1,5 @@
-// Every kind of transfer fault at every transfer, in both directions: nothing unsound is believed, and no force stays on.
+// Every kind of transfer fault at every transfer, in both directions: nothing
+// unsound is believed, and no force stays on.
 #include <gtest/gtest.h>
 
 #include "pincer/tests/devices/usb_scenarios.h"
@@ -40,7 +41,8 @@ TEST_F(UsbFaults, AThousandOfEveryKindWhileStreaming) {
   RecordProperty("rearmed", servo.trips());
 }
 
-// From the first transfer after plugging in on: each kind at each of the first transfers of each direction. The device is found all the same.
+// From the first transfer after plugging in on: each kind at each of the first transfers of each
+// direction. The device is found all the same.
 TEST_F(UsbFaults, OfEveryKindAtEveryTransferOfTheIntroduction) {
   UsbBench bench;
   const auto firmware = bench.addArm("A1");

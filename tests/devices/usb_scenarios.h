@@ -37,7 +37,8 @@ class FaultyServo {
     asked_ = devices::gateForce(limits_, in, gate_);
     arm_->commandForce(asked_);
     // The USB thread gets a chance, not a guarantee: a lost command is one of the faults.
-    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(2);  // where a machine is busy, one yield takes 50
+    // where a machine is busy, one yield takes 50
+    const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(2);
     while (heard() == before && std::chrono::steady_clock::now() < until) std::this_thread::yield();
     look();
   }
@@ -46,7 +47,8 @@ class FaultyServo {
   devices::Trip trip() const { return gate_.trip; }
   int trips() const { return trips_; }      // so often forces were cut and switched on again
   int unsound() const { return unsound_; }  // positions believed that the device never sent
-  int stuck() const { return stuck_; }      // ticks with a force that nobody had asked for lately, or larger than ever asked
+  // ticks with a force that nobody had asked for lately, or larger than ever asked
+  int stuck() const { return stuck_; }
 
  private:
   void rearm() {
@@ -73,7 +75,9 @@ class FaultyServo {
   int silent_ = 0, trips_ = 0, unsound_ = 0, stuck_ = 0;
 };
 
-inline emulation::TransferFault faultKind(int i) { return static_cast<emulation::TransferFault>(1 + i % emulation::kTransferFaults); }
+inline emulation::TransferFault faultKind(int i) {
+  return static_cast<emulation::TransferFault>(1 + i % emulation::kTransferFaults);
+}
 
 // While streaming: `faults` faults at transfers in turn, both directions, all kinds.
 inline void injectFaults(UsbBench& bench, FaultyServo& servo, int faults) {
@@ -117,10 +121,12 @@ inline PlugCycles plugCycles(UsbBench& bench, devices::usb::UsbArm& arm, int cyc
     });
     if (!streams) break;
     if (i < 0) continue;
-    result.worst_stream = std::max(result.worst_stream, std::chrono::duration<double>(std::chrono::steady_clock::now() - plugged).count());
+    result.worst_stream = std::max(result.worst_stream,
+                                   std::chrono::duration<double>(std::chrono::steady_clock::now() - plugged).count());
     result.done = i + 1;
   }
-  eventually([&] { return openDescriptors() <= descriptors; });  // the USB thread closes what is gone in its own time; a leak stays
+  // the USB thread closes what is gone in its own time; a leak stays
+  eventually([&] { return openDescriptors() <= descriptors; });
   result.descriptors = openDescriptors() - descriptors;
   result.bytes = (static_cast<double>(mallinfo2().uordblks) - memory) / std::max(1, result.done);
   return result;

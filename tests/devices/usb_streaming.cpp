@@ -128,7 +128,8 @@ TEST_F(Usb, AnArmThatHearsNothingGoesLimpWithinFiveMillisecondsAndStaysSo) {
   EXPECT_TRUE(arm->sample().valid);
 }
 
-// The deadline began when the command was sent, not when it was asked for: a stall of program and USB thread kept the force for longer.
+// The deadline began when the command was sent, not when it was asked for: a stall of program
+// and USB thread kept the force for longer.
 TEST_F(Usb, ACommandThatWasHeldUpDiesWhenItWouldHaveAnyway) {
   UsbBench bench;
   const auto firmware = bench.addArm("A1");
@@ -151,7 +152,8 @@ TEST_F(Usb, ACommandThatWasHeldUpDiesWhenItWouldHaveAnyway) {
     for (; came && force() > 0 && ms < 20; ++ms) bench.advance(1e-3);
     return came ? ms : -1;
   };
-  for (const int held_up : {0, 1, 2, 3}) EXPECT_EQ(millisecondsOfForce(held_up), 4) << "held up for " << held_up << " ms";
+  for (const int held_up : {0, 1, 2, 3})
+    EXPECT_EQ(millisecondsOfForce(held_up), 4) << "held up for " << held_up << " ms";
   const auto commands = firmware->commands();
   arm->arm();
   held = true;
@@ -183,7 +185,8 @@ TEST_F(Usb, UnpluggedArmIsZeroForceInTheNextTickAndStreamsAgainButForcelessWhenP
     arm->commandForce(f);
     return f;
   };
-  // Bench time may run ahead of the USB thread on a busy machine: then the gate rightly trips on an old sample, and is armed again.
+  // Bench time may run ahead of the USB thread on a busy machine: then the gate rightly
+  // trips on an old sample, and is armed again.
   const auto armedTick = [&] {
     if (!gate.armed) devices::arm(gate), arm->arm();
     return tick();
@@ -283,12 +286,14 @@ TEST_F(Usb, TransfersThatCompleteTogetherAreReadInTheOrderOfTheirCompletion) {
   EXPECT_EQ(arm->counts().lost, 0);
 }
 
-// A minute of two hands on a busy machine lost four frames: two transfers waited for the device, which keeps sixteen frames at the most.
+// A minute of two hands on a busy machine lost four frames: two transfers waited for the
+// device, which keeps sixteen frames at the most.
 TEST_F(Usb, AProgramThatGetsNoProcessorForAWhileLosesNoFrame) {
   UsbBench bench;
   bench.addArm("A1");
   std::atomic<bool> held{false};
-  UsbHost host([&, servo = std::this_thread::get_id()] {  // the USB thread asks for the time: where the machine holds it up
+  // the USB thread asks for the time: where the machine holds it up
+  UsbHost host([&, servo = std::this_thread::get_id()] {
     while (held && std::this_thread::get_id() != servo) std::this_thread::sleep_for(std::chrono::microseconds(100));
     return bench.now_ns.load();
   });
@@ -299,7 +304,8 @@ TEST_F(Usb, AProgramThatGetsNoProcessorForAWhileLosesNoFrame) {
   arm->commandForce(Vec3::Zero());  // wakes it
   for (int i = 0; i < 60; ++i) bench.advance(1e-3);
   held = false;
-  ASSERT_TRUE(eventually([&] { return arm->counts().accepted >= before.accepted + 30; })) << "a frame each 1.4 ms at the most";
+  ASSERT_TRUE(eventually([&] { return arm->counts().accepted >= before.accepted + 30; }))
+      << "a frame each 1.4 ms at the most";
   EXPECT_EQ(arm->counts().lost, 0);
   EXPECT_EQ(arm->counts().late, 0);
   EXPECT_EQ(arm->counts().duplicates, 0);
@@ -314,7 +320,8 @@ TEST_F(Usb, AnArmWhoseLinkageIsToldSaysHowItsJointsBearAForce) {
   ASSERT_TRUE(arm->capabilities().peak_torque);
   EXPECT_NEAR((*arm->capabilities().peak_torque - firmware->plant().peakTorque()).norm(), 0, 1e-4) << "the wire's step";
   ASSERT_TRUE(arm->sample().J);
-  EXPECT_NEAR((*arm->sample().J - *firmware->plant().sample().J).norm(), 0, 1e-4) << "angles from a place in whole nanometres";
+  EXPECT_NEAR((*arm->sample().J - *firmware->plant().sample().J).norm(), 0, 1e-4)
+      << "angles from a place in whole nanometres";
 }
 
 // What was held up on its way is seen as old, though it arrives now.
@@ -325,7 +332,8 @@ TEST_F(Usb, AHeldUpStateIsAsOldAsItIs) {
   ASSERT_TRUE(findAll(bench, host, 1, 0));
   auto* arm = host.arms()[0];
   const auto accepted = arm->counts().accepted;
-  for (int i = 0; i < 10; ++i) bench.now_ns += 1'000'000;  // the device's clock stands still: as if its frames were 10 ms under way
+  // the device's clock stands still: as if its frames were 10 ms under way
+  for (int i = 0; i < 10; ++i) bench.now_ns += 1'000'000;
   bench.bus.advance(2e-3);
   ASSERT_TRUE(eventually([&] { return arm->counts().accepted > accepted; }));
   EXPECT_LT(arm->sample().time, 1e-9 * static_cast<double>(bench.now_ns) - 7e-3);

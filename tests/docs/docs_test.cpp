@@ -1,5 +1,5 @@
-// The documentation is true: its commands run, the files that it names are there, its lines are short, and the API reference builds without a
-// warning.
+// The documentation is true: its commands run, the files that it names are there, its lines are short, and
+// the API reference builds without a warning.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -36,9 +36,11 @@ std::vector<std::string> matches(const std::string& text, const std::regex& patt
   return found;
 }
 
-// Commands of a page in their order: lines of code blocks and code within lines, but for those with a placeholder in capitals.
+// Commands of a page in their order: lines of code blocks and code within lines, but
+// for those with a placeholder in capitals.
 std::vector<std::string> commandsOf(const std::string& page) {
-  static const std::regex pattern(R"((?:\n    |\n\$ |`)(?:build/)?(pincer [a-z][^`#\n]*))"), placeholder(R"(\b[A-Z]{2,}\b|\.\.\.)");
+  static const std::regex pattern(R"((?:\n    |\n\$ |`)(?:build/)?(pincer [a-z][^`#\n]*))"),
+      placeholder(R"(\b[A-Z]{2,}\b|\.\.\.)");
   std::vector<std::string> commands;
   for (std::string command : matches('\n' + readFile(kSource / page), pattern)) {
     command.erase(command.find_last_not_of(" &") + 1);
@@ -53,17 +55,19 @@ struct Shorter {
   std::string instead;
 };
 const std::vector<Shorter> kShorter = {
-    {std::regex("^(pincer .*--view.*)$"), "$1 --help"},                                     // there may be no display
-    {std::regex("^(pincer devices emulate .*|pincer .*--devices haply.*)$"), "$1 --help"},  // they wait, or for a service
-    {std::regex("^(pincer bench .*) --peers"), "$1"},                                       // other engines aren't built in
+    {std::regex("^(pincer .*--view.*)$"), "$1 --help"},  // there may be no display
+    // they wait, or for a service
+    {std::regex("^(pincer devices emulate .*|pincer .*--devices haply.*)$"), "$1 --help"},
+    {std::regex("^(pincer bench .*) --peers"), "$1"},  // other engines aren't built in
     {std::regex("^(pincer (bench|verify|stress)( .*)?)$"), "$1 --list"},
     {std::regex("^(pincer run sphere-pickup --object .*)$"), "$1 --repetitions 1 --friction 0.9 --condition cld+force"},
     {std::regex("^(pincer run findings.*)$"), "$1 --help"},
     {std::regex("^(pincer sweep (sphere|cylinder|manipulation|delay).*)$"), "$1 --help"},
     {std::regex("^(pincer run (smoothness|shape|repeated|backlash|delay)-.*)$"), "$1 --print-study"},
     {std::regex("^(pincer run .*)--participants [0-9]+(.*)$"), "$1--participants 1$2"},
-    {std::regex("^(pincer run (manipulation|[a-z]+-(discrimination|identification|localisation|alignment)|sphere-pickup)( "
-                "--(seed|out|participants).*)?)$"),
+    {std::regex(
+         "^(pincer run (manipulation|[a-z]+-(discrimination|identification|localisation|alignment)|sphere-pickup)( "
+         "--(seed|out|participants).*)?)$"),
      "$1 --help"},
 };
 
@@ -83,7 +87,8 @@ void furnish(const fs::path& folder) {
   for (const char* part : {"tasks", "docs"}) fs::create_symlink(kSource / part, folder / part);
   fs::copy_file(kSource / "tasks/scenes/files/star_knob.obj", folder / "part.obj");
   fs::copy_file(kSource / "tasks/scenes/files/gripper.xml", folder / "robot.xml");
-  const std::string scan = fmt::format("cd '{}' && build/pincer mesh convert part.obj scan.stl --units mm > furnish.log", folder.string());
+  const std::string scan =
+      fmt::format("cd '{}' && build/pincer mesh convert part.obj scan.stl --units mm > furnish.log", folder.string());
   ASSERT_EQ(std::system(scan.c_str()), 0) << readFile(folder / "furnish.log");
 }
 
@@ -96,12 +101,14 @@ TEST_P(DocsPage, ShowsCommandsThatRun) {
   for (const std::string& shown : commandsOf(GetParam())) {
     const std::string command = shortened(shown);
     if (!seen.insert(command).second) continue;
-    const std::string line =
-        fmt::format("cd '{}' && PATH=build:$PATH timeout 120 {} > command.log 2>&1 < /dev/null", folder.path(), command);
+    const std::string line = fmt::format("cd '{}' && PATH=build:$PATH timeout 120 {} > command.log 2>&1 < /dev/null",
+                                         folder.path(), command);
     const bool ok = std::system(line.c_str()) == 0;
     const std::string said = readFile(folder / "command.log");
-    const bool is_mention = said.find(" is required") != std::string::npos;  // a text may speak of `pincer sim` without a scene
-    EXPECT_TRUE(ok || is_mention) << GetParam() << " shows: " << shown << "\nrun as: " << command << "\n" << said.substr(0, 2000);
+    // a text may speak of `pincer sim` without a scene
+    const bool is_mention = said.find(" is required") != std::string::npos;
+    EXPECT_TRUE(ok || is_mention) << GetParam() << " shows: " << shown << "\nrun as: " << command << "\n"
+                                  << said.substr(0, 2000);
   }
 }
 
@@ -110,7 +117,8 @@ TEST_P(DocsPage, NamesFilesThatAreThere) {
   static const std::regex pattern(R"(`((?:contact|engine|grasp|devices|tasks|tests|docs|\.ci)/[A-Za-z0-9_./-]+)`)"),
       link(R"(\]\(([^)#:]+)\))");
   const std::string text = readFile(kSource / GetParam());
-  for (const std::string& file : matches(text, pattern)) EXPECT_TRUE(fs::exists(kSource / file)) << GetParam() << " names " << file;
+  for (const std::string& file : matches(text, pattern))
+    EXPECT_TRUE(fs::exists(kSource / file)) << GetParam() << " names " << file;
   for (const std::string& file : matches(text, link)) {
     EXPECT_TRUE(fs::exists((kSource / GetParam()).parent_path() / file)) << GetParam() << " links to " << file;
   }
@@ -127,7 +135,8 @@ TEST_P(DocsPage, KeepsItsLinesTo110Characters) {
     if (line.starts_with("```")) in_code = !in_code;
     const std::size_t begin = line.find_first_not_of(' ');
     const bool is_prose = !in_code && begin != line.npos && begin < 4 && line[begin] != '|';
-    const auto continues = [](unsigned char c) { return (c & 0xc0) == 0x80; };  // a byte of UTF-8 that begins no character
+    // a byte of UTF-8 that begins no character
+    const auto continues = [](unsigned char c) { return (c & 0xc0) == 0x80; };
     const auto length = static_cast<long>(line.size()) - std::count_if(line.begin(), line.end(), continues);
     if (is_prose) {
       EXPECT_LE(length, 110) << GetParam() << ":" << number << ": " << line.substr(0, 60);
@@ -157,8 +166,8 @@ TEST(FirstScene, IsDrawnByItsProgram) {
 // A minute between two flat jaws; the scene says how it must hang (exit code 1 if it doesn't).
 TEST(Examples, AMugHangsInItsGripper) {
   const TemporaryDirectory folder;
-  const std::string line = fmt::format("'{}/pincer' sim '{}/docs/examples/mug_in_a_gripper.json' > '{}/log' 2>&1", PINCER_BINARY_DIR,
-                                       kSource.string(), folder.path());
+  const std::string line = fmt::format("'{}/pincer' sim '{}/docs/examples/mug_in_a_gripper.json' > '{}/log' 2>&1",
+                                       PINCER_BINARY_DIR, kSource.string(), folder.path());
   EXPECT_EQ(std::system(line.c_str()), 0) << readFile(folder / "log");
 }
 
@@ -167,8 +176,8 @@ TEST(KeyReference, IsWhatTheProgramPrints) {
   const TemporaryDirectory folder;
   int found = 0;
   for (const auto& page : fs::directory_iterator(kSource / "docs/reference")) {
-    const std::string line =
-        fmt::format("'{}/pincer' schema {} --markdown > '{}/page.md'", PINCER_BINARY_DIR, page.path().stem().string(), folder.path());
+    const std::string line = fmt::format("'{}/pincer' schema {} --markdown > '{}/page.md'", PINCER_BINARY_DIR,
+                                         page.path().stem().string(), folder.path());
     EXPECT_EQ(std::system(line.c_str()), 0) << line;
     EXPECT_EQ(readFile(page.path()), readFile(folder / "page.md")) << page.path();
     ++found;
@@ -178,9 +187,9 @@ TEST(KeyReference, IsWhatTheProgramPrints) {
 
 TEST(ApiReference, IsBuiltWithoutAWarning) {
   const TemporaryDirectory folder;
-  const std::string line =
-      fmt::format("cd '{}' && {{ cat docs/Doxyfile; echo 'OUTPUT_DIRECTORY = \"{}\"'; }} | doxygen - > '{}/doxygen.log' 2>&1",
-                  kSource.string(), folder.path(), folder.path());
+  const std::string line = fmt::format(
+      "cd '{}' && {{ cat docs/Doxyfile; echo 'OUTPUT_DIRECTORY = \"{}\"'; }} | doxygen - > '{}/doxygen.log' 2>&1",
+      kSource.string(), folder.path(), folder.path());
   EXPECT_EQ(std::system(line.c_str()), 0) << readFile(folder / "doxygen.log").substr(0, 4000);
   EXPECT_TRUE(fs::exists(folder / "html/index.html"));
 }

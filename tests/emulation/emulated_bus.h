@@ -1,5 +1,5 @@
-// emulated_bus: USB devices that can be plugged in and pulled out, for the unmodified libusb of this process. umockdev shows them in sysfs and
-// tells of plugs; usbfs_interpose answers for their nodes in /dev.
+// emulated_bus: USB devices that can be plugged in and pulled out, for the unmodified libusb of this process. umockdev
+// shows them in sysfs and tells of plugs; usbfs_interpose answers for their nodes in /dev.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -30,7 +30,9 @@ class EmulatedBus {
   void prepare(int device);
   UsbfsDevice& device(int device) { return *slots_[static_cast<std::size_t>(device)].device; }
   // Descriptors that the device shows from its next plugging in on; hexadecimal. Empty: its own.
-  void setDescriptors(int device, const std::string& hex) { slots_[static_cast<std::size_t>(device)].descriptors = hex; }
+  void setDescriptors(int device, const std::string& hex) {
+    slots_[static_cast<std::size_t>(device)].descriptors = hex;
+  }
 
   // All devices' time; in steps of the caller's, or as the wall clock goes, every millisecond.
   void advance(double dt);

@@ -30,7 +30,9 @@ struct EmulatedBus::Testbed {
 // Only with a testbed is umockdev in effect, if it is linked in.
 std::string EmulatedBus::obstacle() {
   const Testbed testbed;
-  return umockdev_in_mock_environment() ? "" : "umockdev's preload library isn't in effect here, so no device can be emulated";
+  return umockdev_in_mock_environment()
+             ? ""
+             : "umockdev's preload library isn't in effect here, so no device can be emulated";
 }
 
 EmulatedBus::EmulatedBus() : testbed_(std::make_unique<Testbed>()) {}
@@ -67,12 +69,15 @@ void EmulatedBus::plug(int device) {
   slot.node = fmt::format("/dev/bus/usb/001/{:03}", address);
   attachUsbfs(slot.node, slot.device);
   const std::string description = fmt::format(
-      "P: {}\nN: bus/usb/001/{:03}\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={:03}\nE: DEVNAME=/dev/bus/usb/001/{:03}\n"
+      "P: {}\nN: bus/usb/001/{:03}\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={:03}\nE: "
+      "DEVNAME=/dev/bus/usb/001/{:03}\n"
       "E: DEVTYPE=usb_device\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={}\\n\nA: speed=12\\n\n"
       "H: descriptors={}\n",
-      slot.path, address, address, address, address, slot.descriptors.empty() ? slot.gadget->descriptors() : slot.descriptors);
+      slot.path, address, address, address, address,
+      slot.descriptors.empty() ? slot.gadget->descriptors() : slot.descriptors);
   GError* error = nullptr;
-  require(umockdev_testbed_add_from_string(testbed_->testbed, description.c_str(), &error) != 0, error, "emulated device");
+  require(umockdev_testbed_add_from_string(testbed_->testbed, description.c_str(), &error) != 0, error,
+          "emulated device");
   slot.plugged = true;
   umockdev_testbed_uevent(testbed_->testbed, ("/sys" + slot.path).c_str(), "add");
 }

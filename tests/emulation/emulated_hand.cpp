@@ -4,10 +4,12 @@
 
 namespace pincer::emulation {
 
-EmulatedHand::EmulatedHand(std::vector<std::shared_ptr<ArmFirmware>> arms, std::vector<std::shared_ptr<DisplayFirmware>> displays)
+EmulatedHand::EmulatedHand(std::vector<std::shared_ptr<ArmFirmware>> arms,
+                           std::vector<std::shared_ptr<DisplayFirmware>> displays)
     : arms_(std::move(arms)), displays_(std::move(displays)) {
   const tasks::SpherePickupOptions options;
-  const tasks::HandScene scene = tasks::makePickupScene(options, tasks::makePickupObject(options), tasks::PickupTrialSpec{});
+  const tasks::HandScene scene =
+      tasks::makePickupScene(options, tasks::makePickupObject(options), tasks::PickupTrialSpec{});
   cues_ = scene.cues;
   for (std::size_t i = 0; i < arms_.size(); ++i) arms_[i]->plant().setGimbal(scene.q_DF[i]);
   participant_.begin(cues_);

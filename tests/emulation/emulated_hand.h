@@ -1,4 +1,5 @@
-// emulated_hand: a simulated participant whose fingers wear the emulated devices: it feels only what they render, and pulls at their arms.
+// emulated_hand: a simulated participant whose fingers wear the emulated devices: it feels only
+// what they render, and pulls at their arms.
 #pragma once
 #include <memory>
 #include <vector>

@@ -1,10 +1,13 @@
 // device_emulator: runs an unmodified program that finds emulated arms and displays on its USB ports.
 //
-//   device_emulator [--arms N] [--displays N] [--falcons N] [--hand] [--unplug SECONDS] [--stop SECONDS] PROGRAM ARGUMENTS...
+//   device_emulator [--arms N] [--displays N] [--falcons N] [--hand] [--unplug
+//   SECONDS] [--stop SECONDS] PROGRAM ARGUMENTS...
 //
-// The same firmware as in the tests, in a process of its own. Falcons take any image of 1,000 bytes. --hand: a simulated participant wears them and picks up the sphere.
-// --unplug: pulls the first arm out after so many seconds and plugs it in again half a second later. --stop: so many seconds after the first
-// force of a motor the program is stopped (SIGSTOP) for half a second; says when the motors had no force any more.
+// The same firmware as in the tests, in a process of its own. Falcons take any image of 1,000 bytes. --hand: a
+// simulated participant wears them and picks up the sphere.
+// --unplug: pulls the first arm out after so many seconds and plugs it in again half a second later.
+// --stop: so many seconds after the first force of a motor the program is stopped (SIGSTOP) for half a
+// second; says when the motors had no force any more.
 #include <fmt/format.h>
 #include <poll.h>
 #include <sched.h>
@@ -57,7 +60,8 @@ int listening(const std::string& name) {
   address.sun_family = AF_UNIX;
   std::memcpy(address.sun_path + 1, name.data(), name.size());
   const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
-  if (socket < 0 || bind(socket, reinterpret_cast<sockaddr*>(&address), size) != 0 || listen(socket, 16) != 0) giveUp("socket");
+  if (socket < 0 || bind(socket, reinterpret_cast<sockaddr*>(&address), size) != 0 || listen(socket, 16) != 0)
+    giveUp("socket");
   return socket;
 }
 
@@ -73,18 +77,23 @@ class ShownPorts {
   std::string add(std::size_t port, const std::string& descriptors) {
     const int address = next_address_++;
     const std::string description = fmt::format(
-        "P: {}\nN: bus/usb/001/{:03}\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={:03}\nE: DEVNAME=/dev/bus/usb/001/{:03}\n"
+        "P: {}\nN: bus/usb/001/{:03}\nE: SUBSYSTEM=usb\nE: DRIVER=usb\nE: BUSNUM=001\nE: DEVNUM={:03}\nE: "
+        "DEVNAME=/dev/bus/usb/001/{:03}\n"
         "E: DEVTYPE=usb_device\nA: bConfigurationValue=1\\n\nA: busnum=1\\n\nA: devnum={}\\n\nA: speed=12\\n\n"
         "H: descriptors={}\n",
         pathOf(port), address, address, address, address, descriptors);
     if (umockdev_testbed_add_from_string(testbed_, description.c_str(), nullptr) == 0) giveUp("device");
     return fmt::format("/dev/bus/usb/001/{:03}", address);
   }
-  void tell(std::size_t port, const char* what) { umockdev_testbed_uevent(testbed_, ("/sys" + pathOf(port)).c_str(), what); }
+  void tell(std::size_t port, const char* what) {
+    umockdev_testbed_uevent(testbed_, ("/sys" + pathOf(port)).c_str(), what);
+  }
   void remove(std::size_t port) { umockdev_testbed_remove_device(testbed_, ("/sys" + pathOf(port)).c_str()); }
 
  private:
-  static std::string pathOf(std::size_t port) { return fmt::format("/devices/pci0000:00/0000:00:14.0/usb1/1-{}", port + 1); }
+  static std::string pathOf(std::size_t port) {
+    return fmt::format("/devices/pci0000:00/0000:00:14.0/usb1/1-{}", port + 1);
+  }
   UMockdevTestbed* testbed_;
   int next_address_ = 2;
 };
@@ -94,14 +103,17 @@ class Emulator {
  public:
   explicit Emulator(const Options& options) : options_(options), listener_(listening(addressOfThis())) {
     for (int i = 0; i < options.arms; ++i) arms_.push_back(std::make_shared<ArmFirmware>(fmt::format("ARM{}", i + 1)));
-    for (int i = 0; i < options.displays; ++i) displays_.push_back(std::make_shared<DisplayFirmware>(fmt::format("CLD{}", i + 1)));
+    for (int i = 0; i < options.displays; ++i)
+      displays_.push_back(std::make_shared<DisplayFirmware>(fmt::format("CLD{}", i + 1)));
     for (const auto& arm : arms_) ports_.push_back(std::make_unique<RemotePort>(arm));
     for (const auto& display : displays_) ports_.push_back(std::make_unique<RemotePort>(display));
     for (int i = 0; i < options.falcons; ++i)
-      ports_.push_back(std::make_unique<RemotePort>(std::make_shared<FalconGadget>(fmt::format("FALCON{}", i + 1), kFalconImage)));
+      ports_.push_back(
+          std::make_unique<RemotePort>(std::make_shared<FalconGadget>(fmt::format("FALCON{}", i + 1), kFalconImage)));
     nodes_.resize(ports_.size());
     for (std::size_t i = 0; i < ports_.size(); ++i) plug(i, false);
-    if (options.hand && options.arms == 2 && options.displays == 2) hand_ = std::make_unique<EmulatedHand>(arms_, displays_);
+    if (options.hand && options.arms == 2 && options.displays == 2)
+      hand_ = std::make_unique<EmulatedHand>(arms_, displays_);
   }
   ~Emulator() {
     running_ = false;
@@ -134,7 +146,8 @@ class Emulator {
   void serveUntil(Time::time_point due) {
     std::vector<pollfd> fds{{listener_, POLLIN, 0}};
     for (const auto& port : ports_) fds.push_back({port->connection(), POLLIN, 0});  // negative: not looked at
-    const auto left = std::chrono::duration_cast<std::chrono::nanoseconds>(std::max(due - Time::now(), Time::duration(0)));
+    const auto left =
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::max(due - Time::now(), Time::duration(0)));
     const timespec wait{0, static_cast<long>(std::min<std::int64_t>(left.count(), 999'999'999))};
     if (ppoll(fds.data(), fds.size(), &wait, nullptr) <= 0) return;
     if (fds[0].revents != 0) accept();
@@ -147,7 +160,8 @@ class Emulator {
     if (connection < 0) return;
     std::array<char, 128> node{};
     const auto got = recv(connection, node.data(), node.size() - 1, 0);
-    const auto found = std::find(nodes_.begin(), nodes_.end(), std::string(node.data(), got > 0 ? static_cast<std::size_t>(got) : 0));
+    const auto found =
+        std::find(nodes_.begin(), nodes_.end(), std::string(node.data(), got > 0 ? static_cast<std::size_t>(got) : 0));
     if (found == nodes_.end()) return void(close(connection));
     ports_[static_cast<std::size_t>(found - nodes_.begin())]->opened(connection);
   }
@@ -158,7 +172,8 @@ class Emulator {
     if (tells) shown_.tell(i, "add");
   }
   void unplugWhenDue() {
-    const auto when = begun_ + std::chrono::duration_cast<Time::duration>(std::chrono::duration<double>(options_.unplug));
+    const auto when =
+        begun_ + std::chrono::duration_cast<Time::duration>(std::chrono::duration<double>(options_.unplug));
     if (unplugs_ == 0 && Time::now() >= when) {
       ++unplugs_;
       ports_[0]->unplug();
@@ -238,9 +253,9 @@ Options optionsOf(int argc, char** argv) {
 int run(int argc, char** argv) {
   const Options options = optionsOf(argc, argv);
   if (options.program[0] == nullptr) {
-    fmt::print(
-        stderr,
-        "device_emulator [--arms N] [--displays N] [--falcons N] [--hand] [--unplug SECONDS] [--stop SECONDS] PROGRAM ARGUMENTS...\n");
+    fmt::print(stderr,
+               "device_emulator [--arms N] [--displays N] [--falcons N] [--hand] [--unplug SECONDS] [--stop SECONDS] "
+               "PROGRAM ARGUMENTS...\n");
     return 2;
   }
   // A device doesn't wait for this computer: its thread goes first, if that is permitted.

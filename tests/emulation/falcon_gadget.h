@@ -1,4 +1,5 @@
-// falcon_gadget: the emulated Falcon on an emulated cable. Its chip answers once per frame of the bus, a millisecond, as full speed does.
+// falcon_gadget: the emulated Falcon on an emulated cable. Its chip answers once per frame of
+// the bus, a millisecond, as full speed does.
 #pragma once
 #include "pincer/tests/emulation/usb_gadget.h"
 #include "pincer/tests/support/emulated_falcon.h"

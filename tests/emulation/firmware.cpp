@@ -25,7 +25,9 @@ devices::SimCldSettings displaySettings(const std::string& serial) {
 
 }  // namespace
 
-Firmware::Firmware(usb::Identity identity) : identity_(std::move(identity)) { status_.state = devices::DeviceState::kReady; }
+Firmware::Firmware(usb::Identity identity) : identity_(std::move(identity)) {
+  status_.state = devices::DeviceState::kReady;
+}
 
 // Device, configuration, vendor interface, endpoints 0x01 and 0x81 (interrupt, 64 bytes, every frame).
 std::string Firmware::descriptors() const {
@@ -130,7 +132,8 @@ std::size_t Firmware::take(Packet& packet) {
 }
 
 ArmFirmware::ArmFirmware(const std::string& serial)
-    : Firmware({usb::DeviceKind::kArm, 1, 1000, "pincer emu arm", serial, usb::Linkage::kPremium, kTipMass}), plant_(armSettings(serial)) {
+    : Firmware({usb::DeviceKind::kArm, 1, 1000, "pincer emu arm", serial, usb::Linkage::kPremium, kTipMass}),
+      plant_(armSettings(serial)) {
   calibration() = {{"base_x", 0.0}, {"base_y", 0.0}, {"base_z", 0.0}, {"base_turn", 0.0}};
 }
 

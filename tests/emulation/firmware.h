@@ -1,5 +1,5 @@
-// firmware: what runs inside an emulated device that speaks docs/usb-protocol.md: packets in, packets out, time from outside. The plant behind
-// it is the simulated arm or display of devices/.
+// firmware: what runs inside an emulated device that speaks docs/usb-protocol.md: packets in, packets out, time from
+// outside. The plant behind it is the simulated arm or display of devices/.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,5 +1,6 @@
-// pincer_emulated: the program pincer with two emulated arms and two emulated displays on its USB ports, worn by a simulated participant who
-// picks up the sphere. All in one process, under the real libusb, so that a session keeps its millisecond.
+// pincer_emulated: the program pincer with two emulated arms and two emulated displays on its USB
+// ports, worn by a simulated participant who picks up the sphere. All in one process, under the real
+// libusb, so that a session keeps its millisecond.
 #include <fmt/format.h>
 
 #include "pincer/tasks/app/app.h"

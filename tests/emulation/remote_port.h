@@ -1,4 +1,5 @@
-// remote_port: an emulated device as the emulator's process sees it: plugged in, opened by a program through usbfs_preload, and unplugged.
+// remote_port: an emulated device as the emulator's process sees it: plugged in, opened by a
+// program through usbfs_preload, and unplugged.
 #pragma once
 #include <array>
 #include <map>

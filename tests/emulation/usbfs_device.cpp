@@ -21,7 +21,8 @@ void resign(Packet& bytes) { usb::store<std::uint16_t>(bytes, 62, usb::crc16(std
 
 // The packet as the fault leaves it; sound to the last bit where the fault isn't one of content.
 Packet spoiled(Packet bytes, TransferFault fault, std::int64_t index) {
-  if (fault == TransferFault::kGarbled) bytes[static_cast<std::size_t>(index % 64)] ^= static_cast<std::uint8_t>(1 << (index % 8));
+  if (fault == TransferFault::kGarbled)
+    bytes[static_cast<std::size_t>(index % 64)] ^= static_cast<std::uint8_t>(1 << (index % 8));
   if (fault == TransferFault::kWrongMagic) bytes[0] = 'X', resign(bytes);
   if (fault == TransferFault::kWrongVersion) bytes[2] = 2, resign(bytes);
   if (fault == TransferFault::kWrongType) bytes[3] = 0x7f, resign(bytes);
@@ -91,7 +92,8 @@ void UsbfsDevice::show() {
   if (ready == raised_ || read_fd_ < 0) return;
   static const std::array<char, 4096> page{};
   std::array<char, 4096> drain;
-  [[maybe_unused]] const auto moved = ready ? ::read(read_fd_, drain.data(), drain.size()) : ::write(write_fd_, page.data(), page.size());
+  [[maybe_unused]] const auto moved =
+      ready ? ::read(read_fd_, drain.data(), drain.size()) : ::write(write_fd_, page.data(), page.size());
   raised_ = ready;
 }
 

@@ -1,8 +1,8 @@
-// usbfs_device: one plugged-in USB device as Linux shows it to libusb: URBs submitted, reaped and discarded, a descriptor to poll, and the
-// faults that a cable and a device can have, each at a chosen transfer.
+// usbfs_device: one plugged-in USB device as Linux shows it to libusb: URBs submitted, reaped and discarded, a
+// descriptor to poll, and the faults that a cable and a device can have, each at a chosen transfer.
 //
-// Readiness for poll: libusb is given the write end of a pipe as the device's descriptor. Full: nothing to reap; drained: writable, so
-// something can be reaped; read end closed: POLLERR, so unplugged.
+// Readiness for poll: libusb is given the write end of a pipe as the device's descriptor. Full: nothing to reap;
+// drained: writable, so something can be reaped; read end closed: POLLERR, so unplugged.
 #pragma once
 #include <linux/usbdevice_fs.h>
 
@@ -65,8 +65,8 @@ class UsbfsDevice {
 
   // The cable's side.
   void advance(double dt);
-  // As the wall clock goes, in steps of a millisecond, until advance(); whoever submits a transfer finds the device up to date, however late
-  // the thread is that moves it.
+  // As the wall clock goes, in steps of a millisecond, until advance(); whoever submits a transfer finds the device up
+  // to date, however late the thread is that moves it.
   void catchUp();
   void unplug();
   // The `index`-th transfer from now (0: the next) to the host (`in`) or from it suffers `fault`.

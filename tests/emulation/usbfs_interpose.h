@@ -1,5 +1,6 @@
-// usbfs_interpose: an executable that contains usbfs_interpose.cpp opens, for /dev/bus/usb/..., the emulated device that is attached there. The
-// unmodified libusb asks the dynamic linker for open, ioctl and close, and finds the executable's first.
+// usbfs_interpose: an executable that contains usbfs_interpose.cpp opens, for /dev/bus/usb/..., the
+// emulated device that is attached there. The unmodified libusb asks the dynamic linker for open, ioctl and
+// close, and finds the executable's first.
 #pragma once
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
-// usbfs_preload: a library for LD_PRELOAD. The USB devices of the program that it is loaded into are those of an emulator in another process
-// (usbfs_wire.h).
+// usbfs_preload: a library for LD_PRELOAD. The USB devices of the program that it is loaded into are those of an
+// emulator in another process (usbfs_wire.h).
 #include <signal.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>

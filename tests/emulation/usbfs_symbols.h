@@ -1,9 +1,10 @@
-// usbfs_symbols: open, ioctl and close as an unmodified libusb calls them, answered here for /dev/bus/usb and passed on for all else. Included
-// by one source of a binary, which defines before, in pincer::emulation:
+// usbfs_symbols: open, ioctl and close as an unmodified libusb calls them, answered here for /dev/bus/usb and passed on
+// for all else. Included by one source of a binary, which defines before, in pincer::emulation:
 //
 //   bool answersUsbfs()                  whether any node is answered
 //   int openUsbfs(const char* node)      a descriptor, or a negative errno
-//   Port* usbfsAt(int fd)                null: not one of ours. Port has gone, submit, reap, discard and clearHalt as UsbfsDevice has them
+//   Port* usbfsAt(int fd)                null: not one of ours. Port has gone, submit, reap,
+//                                        discard and clearHalt as UsbfsDevice has them
 //   void closeUsbfs(int fd)              the descriptor is about to be closed
 #pragma once
 #include <dlfcn.h>
@@ -40,8 +41,8 @@ template <typename Port>
 int request(Port& port, unsigned long code, void* argument) {
   switch (code) {
     case USBDEVFS_GET_CAPABILITIES:
-      *static_cast<std::uint32_t*>(argument) =
-          USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_BULK_CONTINUATION | USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
+      *static_cast<std::uint32_t*>(argument) = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_BULK_CONTINUATION |
+                                               USBDEVFS_CAP_NO_PACKET_SIZE_LIM | USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
       return 0;
     case USBDEVFS_CLAIMINTERFACE:
     case USBDEVFS_DISCONNECT_CLAIM:
@@ -70,7 +71,9 @@ int request(Port& port, unsigned long code, void* argument) {
   }
 }
 
-mode_t modeOf(int flags, std::va_list arguments) { return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0; }
+mode_t modeOf(int flags, std::va_list arguments) {
+  return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0;
+}
 
 }  // namespace
 }  // namespace pincer::emulation
@@ -99,7 +102,8 @@ int ioctl(int fd, unsigned long code, ...) noexcept {
   va_start(arguments, code);
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
-  if (auto* port = pincer::emulation::usbfsAt(fd)) return pincer::emulation::answer(pincer::emulation::request(*port, code, argument));
+  if (auto* port = pincer::emulation::usbfsAt(fd))
+    return pincer::emulation::answer(pincer::emulation::request(*port, code, argument));
   static const auto real = pincer::emulation::next<int (*)(int, unsigned long, ...)>("ioctl");
   return real(fd, code, argument);
 }

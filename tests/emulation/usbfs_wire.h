@@ -1,7 +1,8 @@
-// usbfs_wire: how a program with usbfs_preload and the emulator's process talk about one opened device: a SOCK_SEQPACKET connection to the
-// abstract address in PINCER_USBFS. First the program sends the node's path and gets an errno, and with 0 the write end of a pipe, which is
-// the device's descriptor for libusb (readiness: usbfs_device.h). Then requests go there and completions come back; nobody waits for anything,
-// so that a transfer costs no change of process, and a stopped program doesn't stop the device.
+// usbfs_wire: how a program with usbfs_preload and the emulator's process talk about one opened device: a
+// SOCK_SEQPACKET connection to the abstract address in PINCER_USBFS. First the program sends the node's path and gets
+// an errno, and with 0 the write end of a pipe, which is the device's descriptor for libusb (readiness:
+// usbfs_device.h). Then requests go there and completions come back; nobody waits for anything, so that a transfer
+// costs no change of process, and a stopped program doesn't stop the device.
 #pragma once
 #include <cstdint>
 

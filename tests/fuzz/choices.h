@@ -1,4 +1,5 @@
-// choices: a fuzzer's bytes as a source of decisions. When they are used up, every decision is the first one, so that what is drawn ends.
+// choices: a fuzzer's bytes as a source of decisions. When they are used up, every decision is
+// the first one, so that what is drawn ends.
 #pragma once
 #include <cstddef>
 #include <cstdint>

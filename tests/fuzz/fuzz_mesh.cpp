@@ -33,9 +33,10 @@ void read(Bytes input, MeshFormat format, const ReadOptions& options) {
 // As the program reads a scene's mesh, and as `mesh convert --repair` reads one.
 void readBothWays(Bytes input, MeshFormat format) {
   read(input, format, {});
-  read(input, format, {.metres_per_unit = 1e-3, .degenerate = Degenerate::keep, .left_out = [](const std::string& what) {
-                         demand(isForPeople(what), "what is left out is told in a sentence");
-                       }});
+  read(input, format,
+       {.metres_per_unit = 1e-3, .degenerate = Degenerate::keep, .left_out = [](const std::string& what) {
+          demand(isForPeople(what), "what is left out is told in a sentence");
+        }});
 }
 
 }  // namespace

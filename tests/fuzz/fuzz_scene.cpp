@@ -8,7 +8,8 @@ namespace {
 
 using namespace tasks;
 
-constexpr std::size_t kMostBodies = 12;  // of a world that is stepped: a tick of more costs what a fuzzer has better use for
+// of a world that is stepped: a tick of more costs what a fuzzer has better use for
+constexpr std::size_t kMostBodies = 12;
 constexpr int kTicks = 8;
 
 // A folder that isn't there: files that a scene names are refused.

@@ -40,7 +40,8 @@ class SceneDrawer {
     const JsonValue& node = resolved(unresolved);
     if (const JsonValue* value = node.find("const")) return plain(*value);
     if (const JsonValue* words = node.find("enum")) return plain(words->array()[choices_.below(words->array().size())]);
-    if (const JsonValue* forms = node.find("oneOf")) return draw(forms->array()[choices_.below(forms->array().size())], depth);
+    if (const JsonValue* forms = node.find("oneOf"))
+      return draw(forms->array()[choices_.below(forms->array().size())], depth);
     const JsonValue* type = node.find("type");
     const std::string& name = type != nullptr && type->kind() == JsonValue::Kind::kString ? type->text() : kObject;
     if (name == "number" || name == "integer") return number(node, name == "integer");

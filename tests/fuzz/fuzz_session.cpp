@@ -62,7 +62,8 @@ SoundSession makeSoundSession() {
   }
   SoundSession sound{tests::readFile(file.path()), {}};
   Database database(file.path(), Database::Mode::kRead);
-  Statement columns(database, "SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c WHERE m.type = 'table'");
+  Statement columns(database,
+                    "SELECT m.name, c.name FROM sqlite_master m, pragma_table_info(m.name) c WHERE m.type = 'table'");
   while (columns.step()) sound.columns.push_back({columns.text(0), columns.text(1)});
   return sound;
 }
@@ -77,7 +78,8 @@ void patch(std::string& file, Choices& choices) {
   while (!choices.empty()) {
     const std::size_t at = 256 * 256 * choices.below(4) + choices.below(65536);
     std::size_t k = 0;
-    for (const std::uint8_t byte : choices.take(1 + choices.below(16))) file[(at + k++) % file.size()] = static_cast<char>(byte);
+    for (const std::uint8_t byte : choices.take(1 + choices.below(16)))
+      file[(at + k++) % file.size()] = static_cast<char>(byte);
   }
 }
 
@@ -101,7 +103,8 @@ void changeCells(const std::string& path, Choices& choices) {
     const std::size_t row = choices.below(4);
     const std::string where = row == 0 ? "" : fmt::format(" WHERE rowid = {}", row);
     const std::string value = drawValue(choices);
-    readsOrRefuses([&] { database.run(fmt::format("UPDATE {} SET {} = {}{}", column.table, column.name, value, where)); });
+    readsOrRefuses(
+        [&] { database.run(fmt::format("UPDATE {} SET {} = {}{}", column.table, column.name, value, where)); });
   }
   readsOrRefuses([&] { database.close(); });
 }
@@ -130,7 +133,8 @@ void session(Bytes input) {
   std::string bytes = sound().bytes;
   const bool by_cells = choices.below(2) == 0;
   if (!by_cells) patch(bytes, choices);
-  for (const char* log : {"session.db-wal", "session.db-shm", "session.db-journal"}) std::filesystem::remove(file.beside(log));
+  for (const char* log : {"session.db-wal", "session.db-shm", "session.db-journal"})
+    std::filesystem::remove(file.beside(log));
   file.write(bytes);
   if (by_cells) readsOrRefuses([&] { changeCells(file.path(), choices); });
   readsOrRefuses([&] { readAll(SessionReader(file.path())); });

@@ -29,7 +29,8 @@ void study(Bytes input) {
   read(text, ShapeStudy{});
   readsOrRefuses([&] {
     const std::string written = studyFile(parseStudyFile(text, "fuzz.json"));
-    demand(studyFile(parseStudyFile(written, "again.json")) == written, "a study that is written and read again is the same");
+    demand(studyFile(parseStudyFile(written, "again.json")) == written,
+           "a study that is written and read again is the same");
   });
 }
 

@@ -15,7 +15,8 @@ void trajectory(Bytes input) {
   file.write(textOf(input));
   readsOrRefuses([&] {
     const Trajectory read = readTrajectoryCsv(file.path());
-    for (int i = -1; i <= 5; ++i) demand(read.at(0.25 * i * read.end()).p_W.allFinite(), "places on the way are finite");
+    for (int i = -1; i <= 5; ++i)
+      demand(read.at(0.25 * i * read.end()).p_W.allFinite(), "places on the way are finite");
   });
 }
 
@@ -53,7 +54,8 @@ void sweep_cases(Bytes input) {
   readsOrRefuses([&] {
     const SweepGrid grid = readCases(file.path(), kMost);
     demand(grid.points.size() <= kMost, "no more cases than are allowed");
-    for (const auto& point : grid.points) demand(point.size() == grid.paths.size(), "a case has a value for every path");
+    for (const auto& point : grid.points)
+      demand(point.size() == grid.paths.size(), "a case has a value for every path");
   });
   readsOrRefuses([&] { crossed({parseVariation(std::string(textOf(input)))}, kMost); });
 }

@@ -28,7 +28,8 @@ void readPayload(const Frame& frame) {
   armCapabilitiesIn(frame);
   displayCapabilitiesIn(frame);
   const auto entry = calibrationIn(frame);
-  demand(!entry || toFrame(*entry, frame.type).payload == frame.payload, "a calibration that is told again is the same bytes");
+  demand(!entry || toFrame(*entry, frame.type).payload == frame.payload,
+         "a calibration that is told again is the same bytes");
 }
 
 }  // namespace
@@ -38,7 +39,8 @@ void usb_frame(Bytes input) {
   Frame frame;
   if (decode(input, frame) == FrameError::kNone) {
     const FrameBytes again = encode(frame);
-    demand(std::equal(again.begin(), again.end(), input.begin(), input.end()), "a frame that is told again is the same bytes");
+    demand(std::equal(again.begin(), again.end(), input.begin(), input.end()),
+           "a frame that is told again is the same bytes");
     readPayload(frame);
   }
   if (input.size() < 4) return;
@@ -47,7 +49,8 @@ void usb_frame(Bytes input) {
   frame.payload = {};
   std::copy_n(payload.begin(), std::min(payload.size(), kPayloadSize), frame.payload.begin());
   Frame decoded;
-  if (decode(encode(frame), decoded) == FrameError::kNone) demand(decoded.payload == frame.payload, "a payload arrives as it was sent");
+  if (decode(encode(frame), decoded) == FrameError::kNone)
+    demand(decoded.payload == frame.payload, "a payload arrives as it was sent");
   readPayload(frame);
 }
 

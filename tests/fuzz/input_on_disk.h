@@ -15,7 +15,8 @@ class InputOnDisk {
   const std::string& path() const { return path_; }
   std::string beside(const std::string& name) const { return folder_ / name; }
   void write(std::string_view bytes) const {
-    std::ofstream(path_, std::ios::binary | std::ios::trunc).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(path_, std::ios::binary | std::ios::trunc)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
 
  private:

@@ -1,9 +1,10 @@
-// fuzz_replay: every target over its seeds, over what once broke a promise, and over changed copies of both, by any compiler: each day's test.
+// fuzz_replay: every target over its seeds, over what once broke a promise, and over changed copies
+// of both, by any compiler: each day's test.
 //
 //   fuzz_replay FOLDER [--only TARGET] [--changes N] [--file FILE]
 //
-// FOLDER holds seeds/TARGET/* and regressions/TARGET/*. Ends by itself if all promises are kept; else the program is aborted, and the last line
-// names the file and the change.
+// FOLDER holds seeds/TARGET/* and regressions/TARGET/*. Ends by itself if all promises are kept; else the program is
+// aborted, and the last line names the file and the change.
 #include <fmt/format.h>
 
 #include <algorithm>

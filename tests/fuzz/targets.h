@@ -1,5 +1,6 @@
-// targets: readers of the product, each over bytes that nobody made with care. A target demands of its reader: the bytes are read, or refused by
-// an InputError with a sentence; what was read keeps the reader's promises. Anything else ends the program (demand.h), where the fuzzer sees it.
+// targets: readers of the product, each over bytes that nobody made with care. A target demands of its reader: the
+// bytes are read, or refused by an InputError with a sentence; what was read keeps the reader's promises. Anything else
+// ends the program (demand.h), where the fuzzer sees it.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -25,10 +26,11 @@ void haply_message(Bytes input);  // the texts of the service, each as every kin
 // tasks/run
 void json(Bytes input);
 void xml(Bytes input);
-void mjcf(Bytes input);          // a robot's file, the scene of it and its world
-void scene(Bytes input);         // and the world of it
-void scene_step(Bytes input);    // likewise, and some ticks
-void scene_schema(Bytes input);  // scenes drawn from the schema by the bytes: the reader knows every key that the schema has
+void mjcf(Bytes input);        // a robot's file, the scene of it and its world
+void scene(Bytes input);       // and the world of it
+void scene_step(Bytes input);  // likewise, and some ticks
+// scenes drawn from the schema by the bytes: the reader knows every key that the schema has
+void scene_schema(Bytes input);
 void trajectory(Bytes input);
 void calibration(Bytes input);
 void recording(Bytes input);   // a CSV file for --devices replay

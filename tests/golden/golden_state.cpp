@@ -1,4 +1,5 @@
-// golden_state: runs a world that uses every routine of contact/, engine/ and grasp/ for 20,000 ticks and prints the hash of its state.
+// golden_state: runs a world that uses every routine of contact/, engine/ and grasp/ for
+// 20,000 ticks and prints the hash of its state.
 #include <cmath>
 #include <cstdio>
 
@@ -23,7 +24,8 @@ engine::BodyStart at(double x, double y, double z, const Vec3& w_W = Vec3::Zero(
   return {{Quat::Identity(), Vec3(x, y, z)}, Vec3::Zero(), w_W};
 }
 
-// Two fingers squeeze, lift and shake a sphere over a dish, while a box, a capsule and a cylinder with a flat tumble on the table.
+// Two fingers squeeze, lift and shake a sphere over a dish, while a box, a capsule and a
+// cylinder with a flat tumble on the table.
 World makeWorld() {
   World w;
   engine::WorldBuilder builder(options());

@@ -224,19 +224,21 @@ TEST(FrontDoor, TasksUseOnlyNamedBackDoors) {
 // A participant knows what devices tell, and nothing of the world.
 TEST(House, ParticipantsSeeOnlyDevices) {
   forEachInclude("tasks/lab/participants", [](const std::string& source, const std::string& included) {
-    const bool allowed = included == kFunctions || included.rfind("devices/", 0) == 0 || included.rfind("tasks/lab/participants/", 0) == 0;
+    const bool allowed = included == kFunctions || included.rfind("devices/", 0) == 0 ||
+                         included.rfind("tasks/lab/participants/", 0) == 0;
     EXPECT_TRUE(allowed) << source << " includes " << included;
   });
 }
 
 // A third-party library is named only in files whose names say so.
 TEST(House, LibrariesStayInTheirFiles) {
-  const std::map<std::string, std::string> home = {{"OpenMesh/", "_openmesh"}, {"LinearMath/", "_bullet"}, {"BulletCollision/", "_bullet"},
-                                                   {"sqlite3.h", "_sqlite"},   {"libusb.h", "_libusb"},    {"nlohmann/", ""},
-                                                   {"GLFW/", "_glfw"},         {"EGL/", "_egl"},           {"glad/", "_gl"},
-                                                   {"imgui", "_imgui"},        {"png.h", "_png"},          {"boost/", "_beast"},
-                                                   {"pybind11/", "_pybind11"}, {"hdf5.h", "_hdf5"},        {"zlib.h", "_zlib"},
-                                                   {"simdjson", "_simdjson"}};
+  const std::map<std::string, std::string> home = {
+      {"OpenMesh/", "_openmesh"}, {"LinearMath/", "_bullet"}, {"BulletCollision/", "_bullet"},
+      {"sqlite3.h", "_sqlite"},   {"libusb.h", "_libusb"},    {"nlohmann/", ""},
+      {"GLFW/", "_glfw"},         {"EGL/", "_egl"},           {"glad/", "_gl"},
+      {"imgui", "_imgui"},        {"png.h", "_png"},          {"boost/", "_beast"},
+      {"pybind11/", "_pybind11"}, {"hdf5.h", "_hdf5"},        {"zlib.h", "_zlib"},
+      {"simdjson", "_simdjson"}};
   for (const auto& [folder, seen] : kMaySee) {
     for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
       for (const std::string& line : linesOf(file)) {
@@ -257,7 +259,8 @@ TEST(House, LibrariesStayInTheirFiles) {
 TEST(House, NobodyPrintsWhatMayThrow) {
   for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / "tasks")) {
     if (file.filename() == "print.h") continue;
-    for (const std::string& line : linesOf(file)) EXPECT_EQ(line.find("fmt::print("), std::string::npos) << file << ": " << line;
+    for (const std::string& line : linesOf(file))
+      EXPECT_EQ(line.find("fmt::print("), std::string::npos) << file << ": " << line;
   }
 }
 
@@ -273,8 +276,8 @@ std::set<std::string> constantsOf(const fs::path& file) {
   return names;
 }
 
-// Where sources are compiled several at once, a file's own kFewContacts (200) hid the solver's (60) from the files after it: walls of up to
-// 200 contacts didn't come to rest, and other builds gave other bits.
+// Where sources are compiled several at once, a file's own kFewContacts (200) hid the solver's (60) from the files
+// after it: walls of up to 200 contacts didn't come to rest, and other builds gave other bits.
 TEST(House, ConstantsOfOneFileDontHideThoseOfHeaders) {
   for (const std::string folder : {"contact", "engine", "grasp", "devices"}) {
     std::set<std::string> shared;
@@ -292,7 +295,38 @@ TEST(House, ConstantsOfOneFileDontHideThoseOfHeaders) {
 
 TEST(House, PagesStayShort) {
   for (const auto& [folder, seen] : kMaySee) {
-    for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) EXPECT_LE(linesOf(file).size(), 400u) << file;
+    for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder))
+      EXPECT_LE(linesOf(file).size(), 400u) << file;
+  }
+}
+
+std::size_t columnsOf(const std::string& line) {
+  return static_cast<std::size_t>(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+// Of code and comments; texts in raw strings are as wide as what they are written for.
+std::vector<std::string> widerThan(std::size_t columns, const fs::path& file) {
+  std::vector<std::string> wide;
+  std::string raw;  // what ends the raw string that the line begins in
+  for (const std::string& line : linesOf(file)) {
+    const std::size_t begin = line.find("R\"");
+    const bool in_raw = !raw.empty() || begin != std::string::npos;
+    if (!in_raw && columnsOf(line) > columns) wide.push_back(line);
+    std::size_t from = 0;
+    if (raw.empty() && begin != std::string::npos) {
+      from = line.find('(', begin);
+      raw = ")" + line.substr(begin + 2, from - begin - 2) + "\"";
+    }
+    if (!raw.empty() && line.find(raw, from) != std::string::npos) raw.clear();
+  }
+  return wide;
+}
+
+TEST(House, LinesOfCodeKeepTo120Columns) {
+  for (const std::string folder : {"contact", "engine", "grasp", "devices", "tasks", "tests"}) {
+    for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
+      for (const std::string& line : widerThan(120, file)) ADD_FAILURE() << file << ": " << line;
+    }
   }
 }
 

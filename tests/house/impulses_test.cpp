@@ -1,4 +1,5 @@
-// The ways in which an impulse comes about: every function of the engine's headers that writes one is listed here, with what it does.
+// The ways in which an impulse comes about: every function of the engine's headers that
+// writes one is listed here, with what it does.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -51,11 +52,13 @@ TEST(House, WaysOfAnImpulseAreListed) {
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(PINCER_SOURCE_DIR) / "engine")) {
     if (entry.path().extension() != ".h") continue;
     for (const std::string& name : writersIn(entry.path())) {
-      EXPECT_TRUE(kWritesImpulses.contains(name)) << fmt::format("{}: {} writes an impulse: a way more?", entry.path().string(), name);
+      EXPECT_TRUE(kWritesImpulses.contains(name))
+          << fmt::format("{}: {} writes an impulse: a way more?", entry.path().string(), name);
       found.insert(name);
     }
   }
-  for (const auto& [name, what] : kWritesImpulses) EXPECT_TRUE(found.contains(name)) << name << " is listed (" << what << ") and gone";
+  for (const auto& [name, what] : kWritesImpulses)
+    EXPECT_TRUE(found.contains(name)) << name << " is listed (" << what << ") and gone";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
-// A power cut at any moment of a session: made from the log of all its writes and fsyncs (tests/campaign/call_log_preload.cpp). What was
-// synchronised is there, what wasn't is not; then every trial that was finished before the next one began is in the file.
+// A power cut at any moment of a session: made from the log of all its writes and fsyncs
+// (tests/campaign/call_log_preload.cpp). What was synchronised is there, what wasn't is not; then every trial that was
+// finished before the next one began is in the file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -88,7 +89,8 @@ class Disk {
   void put(const std::string& path, unsigned long inode, bool durable) const {
     const auto found = images_.find(inode);
     std::filesystem::remove(path);
-    if (found != images_.end()) std::ofstream(path, std::ios::binary) << (durable ? found->second.durable : found->second.now);
+    if (found != images_.end())
+      std::ofstream(path, std::ios::binary) << (durable ? found->second.durable : found->second.now);
   }
 
   std::map<unsigned long, Image> images_;
@@ -106,23 +108,25 @@ Content contentOf(const std::string& path) {
   Content content;
   content.integrity = database.text("PRAGMA integrity_check");
   content.finished = database.integer("SELECT count(*) FROM trial");
-  content.begun =
-      database.integer("SELECT max(coalesce((SELECT max(trial) FROM sample), -1), coalesce((SELECT max(trial) FROM event), -1))");
+  content.begun = database.integer(
+      "SELECT max(coalesce((SELECT max(trial) FROM sample), -1), coalesce((SELECT max(trial) FROM event), -1))");
   return content;
 }
 
 std::vector<Call> callsOfASession(const TemporaryDirectory& folder) {
-  const auto ended =
-      tests::spawnPincer({"run", "sphere-pickup", "--repetitions", "2", "--friction", "0.9", "--friction", "0.6", "--condition", "force",
-                          "--sample-rate", "10", "--seed", "3", "--no-report", "--out", folder / "out"},
-                         {.environment = {"LD_PRELOAD=" PINCER_BINARY_DIR "/call_log.so", "PINCER_CALL_LOG=" + (folder / "calls")}});
+  const auto ended = tests::spawnPincer(
+      {"run", "sphere-pickup", "--repetitions", "2", "--friction", "0.9", "--friction", "0.6", "--condition", "force",
+       "--sample-rate", "10", "--seed", "3", "--no-report", "--out", folder / "out"},
+      {.environment = {"LD_PRELOAD=" PINCER_BINARY_DIR "/call_log.so", "PINCER_CALL_LOG=" + (folder / "calls")}});
   EXPECT_EQ(ended.exit_code, 0) << ended.error;
   std::vector<Call> calls = callsIn(folder / "calls");
   std::erase_if(calls, [](const Call& call) { return call.path.find("session.db") == std::string::npos; });
   return calls;
 }
 
-bool isOfTheSession(const std::string& path) { return path.ends_with("/session.db") || path.ends_with("/session.db-wal"); }
+bool isOfTheSession(const std::string& path) {
+  return path.ends_with("/session.db") || path.ends_with("/session.db-wal");
+}
 
 // Remains of a power cut, over all moments of the session.
 struct Judged {

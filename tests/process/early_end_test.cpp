@@ -56,7 +56,8 @@ TEST(InterruptedExport, LeavesNoPartOfATable) {
   std::atomic<bool> interrupted{false};
   session.heed(interrupted);
   std::thread user([&] {
-    while (!std::filesystem::exists(directory / "csv/trial.csv")) std::this_thread::sleep_for(std::chrono::microseconds(100));
+    while (!std::filesystem::exists(directory / "csv/trial.csv"))
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
     interrupted = true;
   });
   try {
@@ -64,7 +65,8 @@ TEST(InterruptedExport, LeavesNoPartOfATable) {
   } catch (const Interrupted&) {
   }
   user.join();
-  for (const auto& file : std::filesystem::directory_iterator(directory / "csv")) EXPECT_EQ(file.path().extension(), ".csv") << file.path();
+  for (const auto& file : std::filesystem::directory_iterator(directory / "csv"))
+    EXPECT_EQ(file.path().extension(), ".csv") << file.path();
 }
 
 TEST(ChildProcess, SaysHowItEnded) {
@@ -119,7 +121,8 @@ TEST(Measurements, KeepWhatALibraryPrintsOutOfTheRecords) {
                               std::printf("Warning [the library] by printf\n");
                               std::cout << "Warning [the library] by cout" << std::endl;
                               const std::string raw = "Warning [the library] by write\n";
-                              EXPECT_EQ(::write(STDOUT_FILENO, raw.data(), raw.size()), static_cast<ssize_t>(raw.size()));
+                              EXPECT_EQ(::write(STDOUT_FILENO, raw.data(), raw.size()),
+                                        static_cast<ssize_t>(raw.size()));
                               return std::vector{atMost("value", 1, "-", 1)};
                             }};
   ::testing::internal::CaptureStdout();
@@ -133,15 +136,18 @@ TEST(Measurements, KeepWhatALibraryPrintsOutOfTheRecords) {
 TEST(Watchdog, IsRefusedWhereThereAreNoMotors) {
   const TemporaryDirectory directory;
   for (const char* devices : {"sim", "mouse", "replay"}) {
-    const Spawned ended =
-        spawnPincer({"run", "sphere-pickup", "--devices", devices, "--watchdog", "8", "--view", "--out", directory / "none"});
+    const Spawned ended = spawnPincer(
+        {"run", "sphere-pickup", "--devices", devices, "--watchdog", "8", "--view", "--out", directory / "none"});
     EXPECT_EQ(ended.exit_code, 2) << devices;
-    EXPECT_NE(ended.error.find("--watchdog 8 guards motors, and --devices " + std::string(devices) + " has none"), std::string::npos)
+    EXPECT_NE(ended.error.find("--watchdog 8 guards motors, and --devices " + std::string(devices) + " has none"),
+              std::string::npos)
         << ended.error;
     EXPECT_FALSE(std::filesystem::exists(directory / "none"));
   }
-  EXPECT_EQ(spawnPincer({"run", "sphere-pickup", "--devices", "usb", "--watchdog", "8", "--yes", "--out", directory / "none"}).exit_code,
-            4);
+  EXPECT_EQ(
+      spawnPincer({"run", "sphere-pickup", "--devices", "usb", "--watchdog", "8", "--yes", "--out", directory / "none"})
+          .exit_code,
+      4);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The program ends while an Inverse3 pushes: by a signal, asked for or not, the last word is zero. The service keeps forces for ever.
+// The program ends while an Inverse3 pushes: by a signal, asked for or not, the last word is
+// zero. The service keeps forces for ever.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -25,19 +26,19 @@ devices::emulate::HaplyServiceSettings settingsThat(DeadMan dead_man) {
 double forceAfter(int signal, DeadMan dead_man) {
   HaplyServer server(settingsThat(dead_man));
   double left = -1;
-  spawnPincer(
-      {"devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes", "--watchdog", "100", "--service", server.place()},
-      {.meanwhile = [&](pid_t pid) {
-        bool pushed = false;
-        for (int i = 0; i < 5000 && !pushed; ++i) {
-          std::this_thread::sleep_for(std::chrono::milliseconds(1));
-          pushed = server.force(0) > 0.1;
-        }
-        ::kill(pid, signal);
-        std::this_thread::sleep_for(std::chrono::milliseconds(500));
-        left = pushed ? server.force(0) : -1;
-        ::kill(pid, SIGKILL);
-      }});
+  spawnPincer({"devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes", "--watchdog", "100",
+               "--service", server.place()},
+              {.meanwhile = [&](pid_t pid) {
+                bool pushed = false;
+                for (int i = 0; i < 5000 && !pushed; ++i) {
+                  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                  pushed = server.force(0) > 0.1;
+                }
+                ::kill(pid, signal);
+                std::this_thread::sleep_for(std::chrono::milliseconds(500));
+                left = pushed ? server.force(0) : -1;
+                ::kill(pid, SIGKILL);
+              }});
   return left;
 }
 

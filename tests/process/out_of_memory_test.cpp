@@ -1,4 +1,5 @@
-// Memory ends anywhere (tests/campaign/fail_malloc.cpp): the program says so and ends with an exit code; a session is marked, its trials are kept.
+// Memory ends anywhere (tests/campaign/fail_malloc.cpp): the program says so and ends with an exit code;
+// a session is marked, its trials are kept.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +52,8 @@ std::vector<long> allPointsUpTo(long last) {
 
 void expectASentence(const Spawned& ended, const std::string& where) {
   EXPECT_EQ(ended.signal, 0) << where << ": " << ended.error;
-  EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 3) << where << ": exit code " << ended.exit_code << ": " << ended.error;
+  EXPECT_TRUE(ended.exit_code == 0 || ended.exit_code == 3)
+      << where << ": exit code " << ended.exit_code << ": " << ended.error;
   if (ended.exit_code == 3) {
     EXPECT_NE(ended.error.find("pincer: "), std::string::npos) << where << ": \"" << ended.error << '"';
   }
@@ -73,7 +75,8 @@ void expectNoLoss(const std::string& path, const Spawned& ended, const std::stri
   }
 }
 
-class OutOfMemory : public testing::TestWithParam<const char*> {  // "": one allocation fails; "+": it and all that follow
+// "": one allocation fails; "+": it and all that follow
+class OutOfMemory : public testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
     if (PINCER_SANITIZED) GTEST_SKIP() << "the sanitizer owns the allocator";
@@ -94,7 +97,8 @@ class OutOfMemory : public testing::TestWithParam<const char*> {  // "": one all
     }
   }
   static std::vector<std::string> session(const std::string& directory) {
-    return {"run", "cylinder-alignment", "--repetitions", "1", "--condition", "cld+force", "--no-report", "--out", directory};
+    return {"run",       "cylinder-alignment", "--repetitions", "1",      "--condition",
+            "cld+force", "--no-report",        "--out",         directory};
   }
   static long allocationsOfASession() {
     const TemporaryDirectory directory;
@@ -121,7 +125,8 @@ TEST_P(OutOfMemory, LosesNoSession) { losesNoSession(pointsUpTo(allocationsOfASe
 TEST_P(OutOfMemory, EndsAnExportInWords) {
   const TemporaryDirectory directory;
   ASSERT_EQ(tests::spawnPincer(session(directory.path())).exit_code, 0);
-  const std::vector<std::string> command{"export", directory / "session.db", "--every", "100", "--out", directory / "csv"};
+  const std::vector<std::string> command{"export", directory / "session.db", "--every", "100",
+                                         "--out",  directory / "csv"};
   endsInWords(command, pointsUpTo(allocationsOf(command), kPoints));
 }
 
@@ -132,8 +137,11 @@ TEST_P(OutOfMemory, EndsAReportInWords) {
   endsInWords(command, pointsUpTo(allocationsOf(command), kPoints / 5));  // gnuplot takes seconds
 }
 
-// Hours; after a change of how the program ends: process --gtest_also_run_disabled_tests --gtest_filter='*AtEveryAllocation*'
-TEST_P(OutOfMemory, DISABLED_LosesNoSessionAtEveryAllocation) { losesNoSession(allPointsUpTo(allocationsOfASession())); }
+// Hours; after a change of how the program ends: process
+// --gtest_also_run_disabled_tests --gtest_filter='*AtEveryAllocation*'
+TEST_P(OutOfMemory, DISABLED_LosesNoSessionAtEveryAllocation) {
+  losesNoSession(allPointsUpTo(allocationsOfASession()));
+}
 TEST_P(OutOfMemory, DISABLED_EndsASceneInWordsAtEveryAllocation) {
   const std::vector<std::string> command{"sim", kScene, "--duration", "0.1"};
   endsInWords(command, allPointsUpTo(allocationsOf(command)));

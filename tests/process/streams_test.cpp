@@ -1,4 +1,5 @@
-// The program's standard streams closed, full, or read by nobody: it says what it can, loses no session, and never mixes messages into one.
+// The program's standard streams closed, full, or read by nobody: it says what it can, loses no
+// session, and never mixes messages into one.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -23,7 +24,8 @@ using tests::TemporaryDirectory;
 const std::vector<std::vector<int>> kClosed{{0}, {1}, {2}, {0, 1}, {0, 2}, {1, 2}, {0, 1, 2}};
 
 std::vector<std::string> session(const std::string& directory) {
-  return {"run", "sphere-pickup", "--repetitions", "1", "--friction", "0.9", "--condition", "cld+force", "--no-report", "--out", directory};
+  return {"run",         "sphere-pickup", "--repetitions", "1",     "--friction", "0.9",
+          "--condition", "cld+force",     "--no-report",   "--out", directory};
 }
 
 void expectWholeSession(const std::string& path) {

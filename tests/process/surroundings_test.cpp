@@ -31,8 +31,8 @@ TEST(Surroundings, AnothersGnutermIsKeptFromPlots) {
 
 TEST(Surroundings, ATmpdirThatIsNoneIsNamed) {
   const TemporaryDirectory directory;
-  const Spawned ended =
-      spawnPincer({"report", sessionIn(directory), "--html", directory / "a.html"}, {.environment = {"TMPDIR=/nonexistent"}});
+  const Spawned ended = spawnPincer({"report", sessionIn(directory), "--html", directory / "a.html"},
+                                    {.environment = {"TMPDIR=/nonexistent"}});
   EXPECT_EQ(ended.exit_code, kExitBadInput);
   EXPECT_NE(ended.error.find("TMPDIR names no directory"), std::string::npos) << ended.error;
 }
@@ -47,8 +47,8 @@ TEST(CommandLine, AFlagTakesNoNumberThatNoTypeHolds) {
 
 TEST(Messages, TheSessionsPathIsShownNotObeyed) {
   const TemporaryDirectory directory;
-  const Spawned ended = spawnPincer({"run", "sphere-pickup", "--repetitions", "1", "--friction", "0.9", "--condition", "force",
-                                     "--no-report", "--out", directory / "a\r\x1b[31mb"});
+  const Spawned ended = spawnPincer({"run", "sphere-pickup", "--repetitions", "1", "--friction", "0.9", "--condition",
+                                     "force", "--no-report", "--out", directory / "a\r\x1b[31mb"});
   EXPECT_EQ(ended.exit_code, kExitOk) << ended.error;
   EXPECT_EQ((ended.out + ended.error).find_first_of("\r\x1b"), std::string::npos) << ended.out;
   EXPECT_NE(ended.out.find("a\\r\\x1b[31mb/session.db"), std::string::npos) << ended.out;

@@ -4,7 +4,8 @@
 
 namespace pincer::tests {
 
-// Allocations by this thread since it started. Always 0 under AddressSanitizer and ThreadSanitizer, which own the allocator.
+// Allocations by this thread since it started. Always 0 under AddressSanitizer and
+// ThreadSanitizer, which own the allocator.
 std::int64_t allocationCount();
 
 // Whether this build can count.

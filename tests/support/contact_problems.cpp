@@ -24,7 +24,8 @@ int ContactScene::addBody(const Vec3& p, double mass, double inertia, const Vec3
   return static_cast<int>(bodies_.size()) - 1;
 }
 
-void ContactScene::addContact(int a, int b, const Vec3& p, const Vec3& n, double mu, double torsion_radius, double normal_bias) {
+void ContactScene::addContact(int a, int b, const Vec3& p, const Vec3& n, double mu, double torsion_radius,
+                              double normal_bias) {
   contacts_.push_back({a, b, p, frameFromNormal(n), mu, torsion_radius, normal_bias});
 }
 
@@ -58,7 +59,8 @@ OwnedContactProblem ContactScene::build() const {
       J.block(problem.first_row[c], 6 * b, block.rows(), 6) = block;
     }
   }
-  for (std::size_t c = 0; c < contacts_.size(); ++c) bias[problem.first_row[c] + engine::kNormalRow] = contacts_[c].normal_bias;
+  for (std::size_t c = 0; c < contacts_.size(); ++c)
+    bias[problem.first_row[c] + engine::kNormalRow] = contacts_[c].normal_bias;
   const Eigen::MatrixXd scaled = J * inverse_mass.cwiseSqrt().asDiagonal();
   problem.movers = static_cast<int>(bodies_.size());
   problem.sides.resize(contacts_.size());
@@ -88,7 +90,9 @@ void OwnedContactProblem::soften(int contact, double compliance) {
   W(row, row) += compliance;
 }
 
-double RandomScenes::uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator_); }
+double RandomScenes::uniform(double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(generator_);
+}
 int RandomScenes::integer(int low, int high) { return std::uniform_int_distribution<int>(low, high)(generator_); }
 Vec3 RandomScenes::vector(double sigma) {
   std::normal_distribution<double> normal(0, sigma);
@@ -103,7 +107,8 @@ OwnedContactProblem RandomScenes::grasp(int fingers, double mass_ratio, bool tor
   for (int f = 0; f < fingers; ++f) {
     const double m = mass * (f % 2 ? mass_ratio : 1) * uniform(0.5, 2);
     const Vec3 d = direction();
-    const int finger = scene.addBody((R + r) * d, m, 0.4 * m * r * r, -d * uniform(0.005, 0.1) + vector(0.02), vector(0.3));
+    const int finger =
+        scene.addBody((R + r) * d, m, 0.4 * m * r * r, -d * uniform(0.005, 0.1) + vector(0.02), vector(0.3));
     scene.addContact(finger, 0, R * d, d, uniform(0.2, 1), torsion ? 0.003 : 0);
   }
   return scene.build();
@@ -115,10 +120,12 @@ OwnedContactProblem RandomScenes::stack(int boxes, double mass_ratio, double dis
   for (int k = 0; k < boxes; ++k) {
     const double m = 0.05 * std::pow(mass_ratio, boxes > 1 ? double(k) / (boxes - 1) : 0) * uniform(0.8, 1.25);
     const Vec3 fall(0, 0, -9.81e-3);
-    scene.addBody({0, 0, side * (k + 0.5)}, m, m * side * side / 6, fall + vector(disturbance), vector(10 * disturbance));
+    scene.addBody({0, 0, side * (k + 0.5)}, m, m * side * side / 6, fall + vector(disturbance),
+                  vector(10 * disturbance));
     const double mu = uniform(0.2, 0.9);
     for (int i = 0; i < 4; ++i)
-      scene.addContact(k, k - 1, {(i & 1 ? 0.5 : -0.5) * side, (i & 2 ? 0.5 : -0.5) * side, side * k}, Vec3::UnitZ(), mu);
+      scene.addContact(k, k - 1, {(i & 1 ? 0.5 : -0.5) * side, (i & 2 ? 0.5 : -0.5) * side, side * k}, Vec3::UnitZ(),
+                       mu);
   }
   return scene.build();
 }
@@ -139,14 +146,16 @@ OwnedContactProblem RandomScenes::cluster(int bodies, int contacts, double mass_
     const Vec3 p_b = b >= 0 ? centres[static_cast<std::size_t>(b)] : Vec3(p_a + 0.04 * direction());
     const Vec3 n = ((p_a - p_b).normalized() + vector(0.2)).normalized();
     const double bias = uniform(0, 1) < 0.2 ? uniform(0, 0.05) : 0;
-    scene.addContact(a, b, 0.5 * (p_a + p_b) + vector(0.005), n, uniform(0, mu_max), torsion && i % 2 ? 0.003 : 0, bias);
+    scene.addContact(a, b, 0.5 * (p_a + p_b) + vector(0.005), n, uniform(0, mu_max), torsion && i % 2 ? 0.003 : 0,
+                     bias);
   }
   return scene.build();
 }
 
 OwnedContactProblem RandomScenes::ring(int contacts, double disturbance) {
   ContactScene scene;
-  scene.addBody({0, 0, 0.02}, 0.2, 0.2 * 0.04 * 0.04 / 6, Vec3(0, 0, -9.81e-3) + vector(disturbance), vector(5 * disturbance));
+  scene.addBody({0, 0, 0.02}, 0.2, 0.2 * 0.04 * 0.04 / 6, Vec3(0, 0, -9.81e-3) + vector(disturbance),
+                vector(5 * disturbance));
   const double mu = uniform(0.2, 0.9);
   for (int i = 0; i < contacts; ++i) {
     const double angle = 2 * M_PI * i / contacts;
@@ -161,7 +170,8 @@ Solved solve(OwnedContactProblem& problem, const engine::SolverOptions& options,
   solved.r = warm_start ? *warm_start : Eigen::VectorXd(Eigen::VectorXd::Zero(view.rowCount()));
   solved.u = Eigen::VectorXd::Zero(view.rowCount());
   engine::SolverScratch scratch(view.contactCount(), view.movers);
-  solved.result = engine::solveContacts(view, options, scratch, {solved.r.data(), solved.r.size()}, {solved.u.data(), solved.u.size()});
+  solved.result = engine::solveContacts(view, options, scratch, {solved.r.data(), solved.r.size()},
+                                        {solved.u.data(), solved.u.size()});
   return solved;
 }
 

@@ -1,4 +1,5 @@
-// contact_problems: frictional contact problems for tests of the solver, from bodies and contact points: W = J M^-1 J^T, q = J v + b.
+// contact_problems: frictional contact problems for tests of the solver, from bodies and
+// contact points: W = J M^-1 J^T, q = J v + b.
 #pragma once
 #include <Eigen/Dense>
 #include <random>
@@ -30,7 +31,8 @@ class ContactScene {
  public:
   int addBody(const Vec3& p, double mass, double inertia, const Vec3& v, const Vec3& w);
   // Contact at `p`, normal `n` from body `b` into body `a`; `b` may be -1. `torsion_radius` > 0 adds a torsional row.
-  void addContact(int a, int b, const Vec3& p, const Vec3& n, double mu, double torsion_radius = 0, double normal_bias = 0);
+  void addContact(int a, int b, const Vec3& p, const Vec3& n, double mu, double torsion_radius = 0,
+                  double normal_bias = 0);
   OwnedContactProblem build() const;
 
  private:
@@ -75,6 +77,7 @@ struct Solved {
   Eigen::VectorXd r, u;
   engine::SolveResult result;
 };
-Solved solve(OwnedContactProblem& problem, const engine::SolverOptions& options = {}, const Eigen::VectorXd* warm_start = nullptr);
+Solved solve(OwnedContactProblem& problem, const engine::SolverOptions& options = {},
+             const Eigen::VectorXd* warm_start = nullptr);
 
 }  // namespace pincer::tests

@@ -1,4 +1,5 @@
-// effort: how many draws a random test makes. The same code runs for each, so a sanitized build, ten times as slow, makes a quarter of them.
+// effort: how many draws a random test makes. The same code runs for each, so a sanitized build,
+// ten times as slow, makes a quarter of them.
 #pragma once
 #include <cstdlib>
 

@@ -1,4 +1,5 @@
-// emulated_falcon: a Novint Falcon that isn't there: its FTDI chip, its loader, its firmware and its three motors, as libnifalcon finds them.
+// emulated_falcon: a Novint Falcon that isn't there: its FTDI chip, its loader, its firmware and its
+// three motors, as libnifalcon finds them.
 #pragma once
 #include <algorithm>
 #include <atomic>

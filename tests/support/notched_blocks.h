@@ -1,4 +1,5 @@
-// notched_blocks: solids made of equal cells, some left out: steps, corners, pits, and what a linear map makes of them. All edges sharp.
+// notched_blocks: solids made of equal cells, some left out: steps, corners, pits, and what a
+// linear map makes of them. All edges sharp.
 #pragma once
 #include <array>
 #include <functional>
@@ -8,7 +9,8 @@
 
 namespace pincer::tests {
 
-// n^3 cells of edge `cell` [m] around the origin, those that `is_solid(x, y, z)` keeps; x, y, z count cells from 0. Parts may touch at faces only.
+// n^3 cells of edge `cell` [m] around the origin, those that `is_solid(x, y, z)` keeps; x, y, z count
+// cells from 0. Parts may touch at faces only.
 contact::TriangleMesh cellSolid(int n, double cell, const std::function<bool(int, int, int)>& is_solid);
 
 // Coordinates times `A`, whose determinant must be positive.

@@ -1,4 +1,5 @@
-// random_numbers: a small reproducible generator for tests that need millions of draws (SplitMix64; Steele, Lea, Flood, OOPSLA 2014).
+// random_numbers: a small reproducible generator for tests that need millions of draws
+// (SplitMix64; Steele, Lea, Flood, OOPSLA 2014).
 #pragma once
 #include <cstdint>
 

@@ -8,7 +8,8 @@ namespace pincer::tests {
 // Evenly over the unit sphere (by rejection from the cube).
 inline Vec3 direction(RandomNumbers& random) {
   Vec3 d;
-  do d = Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};  // braces: drawn from left to right by every compiler
+  // braces: drawn from left to right by every compiler
+  do d = Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
   while (d.norm() > 1 || d.norm() < 0.1);
   return d.normalized();
 }

@@ -12,7 +12,9 @@ using engine::TreeModel;
 class Dice {
  public:
   explicit Dice(std::mt19937_64& random) : random_(random) {}
-  double between(double least, double most) { return least + (most - least) * (static_cast<double>(random_() >> 11) * 0x1p-53); }
+  double between(double least, double most) {
+    return least + (most - least) * (static_cast<double>(random_() >> 11) * 0x1p-53);
+  }
   int below(int count) { return static_cast<int>(random_() % static_cast<unsigned>(count)); }
   Vec3 vector(double most) { return {between(-most, most), between(-most, most), between(-most, most)}; }
   Pose pose(double reach) { return {quatFromRotationVector(vector(3)), vector(reach)}; }
@@ -26,7 +28,10 @@ void addLink(Dice& dice, const RandomTreeOptions& options, TreeModel& tree) {
   const int number = static_cast<int>(tree.links.size());
   link.parent = dice.below(number + 1) - 1;
   const int kind = dice.below(options.balls ? 8 : 7);
-  link.kind = kind < 4 ? JointKind::kPivot : kind < 6 ? JointKind::kSlider : kind < 7 ? JointKind::kWeld : JointKind::kBall;
+  link.kind = kind < 4   ? JointKind::kPivot
+              : kind < 6 ? JointKind::kSlider
+              : kind < 7 ? JointKind::kWeld
+                         : JointKind::kBall;
   if (number == 0) link.kind = JointKind::kPivot;
   link.reversed = dice.below(2) == 1;
   link.X_PJ = dice.pose(0.2);
@@ -59,7 +64,8 @@ void addCoupling(Dice& dice, TreeModel& tree) {
   a.leader = leader;
   // Monotone over a turn and more: where a polynomial turns back, what follows has no inertia for a moment.
   const double slope = dice.between(0.5, 2) * (dice.below(2) == 1 ? 1 : -1);
-  a.polynomial = {dice.between(-1, 1), slope, dice.between(-0.05, 0.05), dice.between(-0.01, 0.01), dice.between(-1e-3, 1e-3)};
+  a.polynomial = {dice.between(-1, 1), slope, dice.between(-0.05, 0.05), dice.between(-0.01, 0.01),
+                  dice.between(-1e-3, 1e-3)};
   tree.has_couplings = true;
 }
 
@@ -82,7 +88,8 @@ RandomTree randomTree(std::mt19937_64& random, const RandomTreeOptions& options)
   for (int k = 0; options.couplings && k < dice.below(3); ++k) addCoupling(dice, out.tree);
   for (int k = 0; options.drives && k < dice.below(3); ++k) addDrive(dice, out.tree);
   finishTree(out.tree);
-  if (options.driven_base) out.base = {dice.pose(0.3), {dice.vector(1), dice.vector(2)}, dice.vector(5), dice.vector(5)};
+  if (options.driven_base)
+    out.base = {dice.pose(0.3), {dice.vector(1), dice.vector(2)}, dice.vector(5), dice.vector(5)};
   out.q.assign(static_cast<std::size_t>(out.tree.q_count), 0);
   std::vector<double> step(out.tree.before.size());
   for (double& s : step) s = dice.between(-1, 1);

@@ -23,8 +23,9 @@ constexpr double kPi = std::numbers::pi;
 
 double lerp(double a, double b, double t) { return a + t * (b - a); }
 
-// The square [-1, 1]^2 to polar coordinates of the unit disc, without the usual crowding at the pole, where the zoom would lose its way.
-// Source: P. Shirley, K. Chiu, "A low distortion map between disk and square", J. Graphics Tools 2(3), 1997.
+// The square [-1, 1]^2 to polar coordinates of the unit disc, without the usual crowding at the pole,
+// where the zoom would lose its way. Source: P. Shirley, K. Chiu, "A low distortion map between disk
+// and square", J. Graphics Tools 2(3), 1997.
 struct Polar {
   double rho, angle;  // [-], [rad]
 };
@@ -50,7 +51,8 @@ void addDisc(std::vector<Patch>& patches, const std::function<Vec3(double rho, d
 void addHemisphere(std::vector<Patch>& patches, double r, double centre, double up) {
   addDisc(patches, [=](double rho, double angle) {
     const double polar = rho * kPi / 2;
-    return Vec3(r * std::sin(polar) * std::cos(angle), r * std::sin(polar) * std::sin(angle), centre + up * r * std::cos(polar));
+    return Vec3(r * std::sin(polar) * std::cos(angle), r * std::sin(polar) * std::sin(angle),
+                centre + up * r * std::cos(polar));
   });
 }
 
@@ -130,7 +132,8 @@ std::vector<Patch> patchesOf(const HalfSpace&) {
   return patches;
 }
 
-// A triangle as three quadrilaterals that meet in its middle: none has a side of no length, near which the zoom would lose its way.
+// A triangle as three quadrilaterals that meet in its middle: none has a side of no
+// length, near which the zoom would lose its way.
 void addTriangle(std::vector<Patch>& patches, const std::array<Vec3, 3>& p) {
   const Vec3 middle = (p[0] + p[1] + p[2]) / 3;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -147,7 +150,8 @@ std::vector<Patch> patchesOf(const Convex& c) {
   const auto corner = [&](int vertex) { return c.hull->vertices()[static_cast<std::size_t>(vertex)]; };
   for (const contact::Polytope::Face& face : c.hull->faces()) {
     const std::span<const int> loop = c.hull->cornersOf(face);
-    for (std::size_t k = 1; k + 1 < loop.size(); ++k) addTriangle(patches, {corner(loop[0]), corner(loop[k]), corner(loop[k + 1])});
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k)
+      addTriangle(patches, {corner(loop[0]), corner(loop[k]), corner(loop[k + 1])});
   }
   return patches;
 }
@@ -163,14 +167,17 @@ bool holds(const Box& b, const Vec3& q) {
 bool holds(const Cylinder& c, const Vec3& q) {
   return q.x() * q.x() + q.y() * q.y() <= c.radius * c.radius && std::abs(q.z()) <= c.half_length;
 }
-bool holds(const CylinderWithFlat& c, const Vec3& q) { return q.x() <= c.flat_distance && holds(Cylinder{c.radius, c.half_length}, q); }
+bool holds(const CylinderWithFlat& c, const Vec3& q) {
+  return q.x() <= c.flat_distance && holds(Cylinder{c.radius, c.half_length}, q);
+}
 bool holds(const Capsule& c, const Vec3& q) {
   const Sphere end{c.radius};
   return holds(Cylinder{c.radius, c.half_length}, q) || holds(end, q - c.half_length * Vec3::UnitZ()) ||
          holds(end, q + c.half_length * Vec3::UnitZ());
 }
 bool holds(const Convex& c, const Vec3& q) {
-  return std::all_of(c.hull->faces().begin(), c.hull->faces().end(), [&](const auto& face) { return face.n.dot(q) <= face.d; });
+  return std::all_of(c.hull->faces().begin(), c.hull->faces().end(),
+                     [&](const auto& face) { return face.n.dot(q) <= face.d; });
 }
 bool holds(const Mesh&, const Vec3&) { throw std::invalid_argument("a mesh has no exact inside"); }
 
@@ -222,8 +229,9 @@ double SampledSurface::signedDistance(const Vec3& q) const {
 }
 
 std::shared_ptr<const contact::Polytope> voussoir() {
-  const std::vector<Vec3> points = {{-0.02, -0.015, -0.018}, {0.02, -0.015, -0.018}, {0.026, -0.015, 0.016}, {-0.026, -0.015, 0.016},
-                                    {-0.02, 0.015, -0.018},  {0.02, 0.015, -0.018},  {0.026, 0.015, 0.016},  {-0.026, 0.015, 0.016}};
+  const std::vector<Vec3> points = {{-0.02, -0.015, -0.018}, {0.02, -0.015, -0.018}, {0.026, -0.015, 0.016},
+                                    {-0.026, -0.015, 0.016}, {-0.02, 0.015, -0.018}, {0.02, 0.015, -0.018},
+                                    {0.026, 0.015, 0.016},   {-0.026, 0.015, 0.016}};
   return contact::Polytope::hullOf(points, "voussoir");
 }
 

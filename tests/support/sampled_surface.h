@@ -1,10 +1,12 @@
-// sampled_surface: the brute-force oracle of closed forms: a shape's surface as a set of patches that are sampled, not solved.
+// sampled_surface: the brute-force oracle of closed forms: a shape's surface as a set
+// of patches that are sampled, not solved.
 //
-//   min f = min over the patches, over (u, v) in [0, 1]^2, of f(S(u, v));   d(q) = +-sqrt(min |S - q|^2), negative where q is inside
+//   min f = min over the patches, over (u, v) in [0, 1]^2, of f(S(u, v));   d(q) = +-sqrt(min |S - q|^2),
+//                                                                           negative where q is inside
 //
-// Each patch is small enough (a quarter turn at most) that the distance to a point has one basin on it; a grid is laid over the patch and
-// laid again, finer, around its best sample until its cells are below 1e-9 of the patch. Shares no line with contact/shape.
-// A half-space is a square of side 1 m: keep test points within 0.2 m of B's origin.
+// Each patch is small enough (a quarter turn at most) that the distance to a point has one basin on it; a grid is laid
+// over the patch and laid again, finer, around its best sample until its cells are below 1e-9 of the patch. Shares no
+// line with contact/shape. A half-space is a square of side 1 m: keep test points within 0.2 m of B's origin.
 #pragma once
 #include <functional>
 #include <memory>
@@ -30,7 +32,8 @@ class SampledSurface {
   double signedDistance(const Vec3& q) const;                         // [m], within kSamplingError
   double minimum(const std::function<double(const Vec3&)>& f) const;  // of f over the surface
 
-  // A zoomed cell is 1e-9 of a patch of at most 0.5 m; the distance is flat to first order at a smooth minimum, but not at a corner.
+  // A zoomed cell is 1e-9 of a patch of at most 0.5 m; the distance is flat to first order
+  // at a smooth minimum, but not at a corner.
   static constexpr double kSamplingError = 2e-9;  // [m]
 
  private:

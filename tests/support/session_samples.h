@@ -6,7 +6,8 @@
 
 namespace pincer::tests {
 
-inline std::vector<tasks::SampleRecord> samplesOf(const tasks::SessionReader& reader, const tasks::SampleFilter& filter = {}) {
+inline std::vector<tasks::SampleRecord> samplesOf(const tasks::SessionReader& reader,
+                                                  const tasks::SampleFilter& filter = {}) {
   std::vector<tasks::SampleRecord> samples;
   reader.forEachSample(filter, [&](const tasks::SampleRecord& s) { samples.push_back(s); });
   return samples;

@@ -12,7 +12,8 @@ namespace {
 using contact::SurfaceContact;
 using contact::TriangleMesh;
 
-constexpr double kPlace = 1e-7;      // of the mesh's size: residuals of 1e-9 m, where hollows about as tight as the finger magnify them
+// of the mesh's size: residuals of 1e-9 m, where hollows about as tight as the finger magnify them
+constexpr double kPlace = 1e-7;
 constexpr double kDirection = 1e-5;  // [rad]
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -41,7 +42,8 @@ std::array<Vec3, 2> smoothHandles(const Vec3& P0, const Vec3& P1, const Vec3& N0
   return {P0 + d * (6 * g - 2 * rho * N0 + sigma * N1) / 18, P1 - d * (6 * g + rho * N0 - 2 * sigma * N1) / 18};
 }
 
-// contact.md: both sides of a crease share T = nA x nB; at its smooth end the tangent there. g itself where that leads elsewhere.
+// contact.md: both sides of a crease share T = nA x nB; at its smooth end the tangent
+// there. g itself where that leads elsewhere.
 Vec3 creaseHandle(const Vec3& P, const Vec3& nA, const Vec3& nB, const Vec3& g, double d) {
   Vec3 T = g;
   if (nA.cross(nB).norm() > 0.05) {
@@ -71,7 +73,9 @@ Vec3 bezierTangent(const std::array<Vec3, 4>& c, double s) {
   const double q = 1 - s;
   return q * q * (c[1] - c[0]) + 2 * q * s * (c[2] - c[1]) + s * s * (c[3] - c[2]);
 }
-Vec3 bezier(const std::array<Vec3, 3>& c, double s) { return (1 - s) * (1 - s) * c[0] + 2 * s * (1 - s) * c[1] + s * s * c[2]; }
+Vec3 bezier(const std::array<Vec3, 3>& c, double s) {
+  return (1 - s) * (1 - s) * c[0] + 2 * s * (1 - s) * c[1] + s * s * c[2];
+}
 
 // The parameter of the curve's place nearest to p: a grid laid again, finer, around its best sample.
 double nearestOn(const std::array<Vec3, 4>& curve, const Vec3& p) {
@@ -142,7 +146,8 @@ void ShellOracle::buildFaces(const TriangleMesh& mesh) {
                           other.triangle < 0});
       }
     }
-    // The middle of the patch is the mean of three smooth curves, each from a corner to the middle of the side across, at 2/3.
+    // The middle of the patch is the mean of three smooth curves, each from a corner
+    // to the middle of the side across, at 2/3.
     Vec3 middle = Vec3::Zero(), others = p[0] + p[1] + p[2];
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t k = (i + 1) % 3, l = (i + 2) % 3;
@@ -247,12 +252,15 @@ bool ShellOracle::isFaceSolution(const Vec3& C, const SurfaceContact& answer) co
   return false;
 }
 
-// n as a combination of the sides' normals and the edge's direction: the first two not negative, the third next to nothing. What is let
-// through: 2e-3 of the sides' cross product, for the product's edge equation has a small part along the edge.
+// n as a combination of the sides' normals and the edge's direction: the first two not negative, the
+// third next to nothing. What is let through: 2e-3 of the sides' cross product, for the product's edge
+// equation has a small part along the edge.
 bool ShellOracle::isBetween(const SharpEdge& edge, double s, const Vec3& n) const {
   constexpr double kAlong = 2e-3;
-  const Vec3 left = unit(bezier(edge.left, s)), right = unit(bezier(edge.right, s)), along = unit(bezierTangent(edge.curve, s));
-  if (edge.is_border) return std::abs(n.dot(along)) < 1e-4 && n.dot(left.cross(along)) <= kDirection;  // not over the face
+  const Vec3 left = unit(bezier(edge.left, s)), right = unit(bezier(edge.right, s)),
+             along = unit(bezierTangent(edge.curve, s));
+  // not over the face
+  if (edge.is_border) return std::abs(n.dot(along)) < 1e-4 && n.dot(left.cross(along)) <= kDirection;
   const Vec3 across = left.cross(right);
   if (across.norm() < 1e-2) return std::abs(n.dot(along)) < 0.1;  // the crease has all but ended
   Mat3 basis;
@@ -281,7 +289,8 @@ bool ShellOracle::isVertexContact(const Vec3& C, const SurfaceContact& answer) c
     bool stays = true;
     for (const auto& [t, c] : corners_[v]) {
       const Jet x = jetAt(faces_[at(t)], c == 1, c == 2);
-      const std::array<Vec3, 3> next = {x.Su, x.Sv - x.Su, -x.Sv}, last = {x.Sv, -x.Su, x.Su - x.Sv};  // along the corner's two sides
+      // along the corner's two sides
+      const std::array<Vec3, 3> next = {x.Su, x.Sv - x.Su, -x.Sv}, last = {x.Sv, -x.Su, x.Su - x.Sv};
       Mat3 basis;
       basis << unit(next[at(c)]), unit(last[at(c)]), unit(x.N);
       const Vec3 share = basis.partialPivLu().solve(R);
@@ -328,15 +337,18 @@ double ShellOracle::distance(const Vec3& C) const {
 }
 
 std::string ShellOracle::complaint(const Vec3& C, double r, const SurfaceContact& answer) const {
-  if (!answer.p_BS.allFinite() || !answer.n_B.allFinite() || !std::isfinite(answer.phi)) return "the answer isn't finite";
+  if (!answer.p_BS.allFinite() || !answer.n_B.allFinite() || !std::isfinite(answer.phi))
+    return "the answer isn't finite";
   if (std::abs(answer.n_B.norm() - 1) > 1e-12) return fmt::format("|n| = {}", answer.n_B.norm());
   const double height = answer.phi + r;
   const double off = (C - answer.p_BS - height * answer.n_B).norm();
-  if (off > 1e-13 * (size_ + C.norm())) return fmt::format("the centre lies {:.3g} m beside the normal over the contact", off);
+  if (off > 1e-13 * (size_ + C.norm()))
+    return fmt::format("the centre lies {:.3g} m beside the normal over the contact", off);
   if (isFaceSolution(C, answer) || isEdgeContact(C, answer) || isVertexContact(C, answer)) return {};
   const double nearest = distance(C);
   if (height >= r && std::abs(height - nearest) < 1e-3 * size_) return {};
-  return fmt::format("height {:.6g} m solves neither face, edge nor vertex; the surface is {:.6g} m away", height, nearest);
+  return fmt::format("height {:.6g} m solves neither face, edge nor vertex; the surface is {:.6g} m away", height,
+                     nearest);
 }
 
 }  // namespace pincer::tests

@@ -1,4 +1,5 @@
-// shell_oracle: the brute-force judge of contact with a smooth mesh. Evaluates the patches by its own formulas and looks for all solutions.
+// shell_oracle: the brute-force judge of contact with a smooth mesh. Evaluates the patches by its
+// own formulas and looks for all solutions.
 //
 //   F(u, v, h) = S(u, v) + h N(u, v) - C = 0                          on a face, |N| = 1 at the corners only
 //   n = (C - E(s)) / |C - E(s)| between the two sides' normals        on a sharp edge
@@ -6,9 +7,10 @@
 //
 //   S, E, V  places on the face, the edge's curve, the vertex [m];  h  height [m];  C  fingertip centre [m]
 //
-// Faces: Newton's method in (u, v, h), all three unknowns at once, from a grid of starts in every triangle. Patches as sums over exponents,
-// with Walton and Meek's edge cubics and the crease rule written down again from contact.md's formulas. Neighbours and corner normals come
-// from contact/mesh (connectivity.h), which has tests of its own; nothing comes from contact/surface but the answer that is judged.
+// Faces: Newton's method in (u, v, h), all three unknowns at once, from a grid of starts in every triangle. Patches as
+// sums over exponents, with Walton and Meek's edge cubics and the crease rule written down again from contact.md's
+// formulas. Neighbours and corner normals come from contact/mesh (connectivity.h), which has tests of its own; nothing
+// comes from contact/surface but the answer that is judged.
 #pragma once
 #include <array>
 #include <optional>
@@ -30,15 +32,17 @@ struct ShellSolution {
 
 class ShellOracle {
  public:
-  explicit ShellOracle(const contact::TriangleMesh& mesh, double crease_angle = 0.6981317007977318, bool use_file_normals = true);
+  explicit ShellOracle(const contact::TriangleMesh& mesh, double crease_angle = 0.6981317007977318,
+                       bool use_file_normals = true);
 
   // Every solution on a face within its borders (to 1e-9 of the barycentric coordinates).
   std::vector<ShellSolution> faceSolutions(const Vec3& C) const;
   // From `C` to the patches [m].
   double distance(const Vec3& C) const;
 
-  // What is wrong with the answer for a finger of radius `r`; empty if nothing is. The answer is right where it solves one of the three
-  // equations; a finger that touches nothing may also be given the nearest place, whatever the normal there.
+  // What is wrong with the answer for a finger of radius `r`; empty if nothing is. The answer is right
+  // where it solves one of the three equations; a finger that touches nothing may also be given the
+  // nearest place, whatever the normal there.
   std::string complaint(const Vec3& C, double r, const contact::SurfaceContact& answer) const;
 
   double size() const { return size_; }  // of the mesh's box [m]

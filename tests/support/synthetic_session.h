@@ -1,5 +1,6 @@
-// synthetic_session: a sphere-pickup session that no physics made, for tests of the store and the report. Made to look like the real thing:
-// reaches, squeezes that slip out, a lift to 50 mm, tactors that follow with delay. The same seed gives the same session.
+// synthetic_session: a sphere-pickup session that no physics made, for tests of the store and the report. Made
+// to look like the real thing: reaches, squeezes that slip out, a lift to 50 mm, tactors that follow with
+// delay. The same seed gives the same session.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -53,7 +54,8 @@ class SyntheticSession {
     return next_trial_;
   }
 
-  void writeTrial(tasks::SessionWriter& out, std::int64_t participant, const std::string& condition, double mu, std::int64_t index) {
+  void writeTrial(tasks::SessionWriter& out, std::int64_t participant, const std::string& condition, double mu,
+                  std::int64_t index) {
     tasks::TrialRecord t;
     t.trial = next_trial_++;
     t.participant = participant;
@@ -144,7 +146,8 @@ class SyntheticSession {
     for (const Key& k : keys_) {
       for (double now = from_time; now < k.until; now += 1 / plan_.rate) {
         const double u = (now - from_time) / (k.until - from_time), blend = u * u * u * (10 - 15 * u + 6 * u * u);
-        fill(s, t, now, from_grip + blend * (k.grip - from_grip), from_height + blend * (k.height - from_height), k.slide, phase, shown);
+        fill(s, t, now, from_grip + blend * (k.grip - from_grip), from_height + blend * (k.height - from_height),
+             k.slide, phase, shown);
         out.pushSample(s);
       }
       from_time = k.until;
@@ -154,8 +157,8 @@ class SyntheticSession {
     keys_.clear();
   }
 
-  void fill(tasks::SampleRecord& s, const tasks::TrialRecord& t, double now, double grip, double height, double slide, double phase,
-            std::array<double, 2>& shown) {
+  void fill(tasks::SampleRecord& s, const tasks::TrialRecord& t, double now, double grip, double height, double slide,
+            double phase, std::array<double, 2>& shown) {
     s.trial = t.trial;
     s.tick = tick_++;
     s.time = now;
@@ -167,8 +170,9 @@ class SyntheticSession {
       const double side = f == 0 ? -1 : 1;
       const bool touching = grip > 0.02;
       r.normal_force = touching ? std::max(0.0, grip + normal(0.01) + 0.03 * side) : 0;
-      r.tangential_force =
-          touching ? (slide > 0 ? t.mu_d * r.normal_force : std::min(0.5 * kMass * kGravity, 0.95 * t.mu_s * r.normal_force)) : 0;
+      r.tangential_force = touching ? (slide > 0 ? t.mu_d * r.normal_force
+                                                 : std::min(0.5 * kMass * kGravity, 0.95 * t.mu_s * r.normal_force))
+                                    : 0;
       r.gap = touching ? 0 : 5e-3;
       r.flags = (touching ? 1 : 0) | (touching && slide > 0 ? 2 : 0) | (cld_ ? 0 : 8);
       r.p_WF = {side * (kRadius + 8e-3 - 2e-3 * grip), 0, kRadius + height};
@@ -176,7 +180,8 @@ class SyntheticSession {
       r.f_contact_W = {side * r.normal_force, 0, -r.tangential_force};
       r.f_arm_D = r.f_contact_W;
       for (std::size_t a = 0; a < 2; ++a) {
-        r.place_wanted_L[a] = cld_ ? 3.5e-3 * std::sin(1.3 * (now - start_) + phase + 1.2 * f + 0.9 * static_cast<double>(a)) : 0;
+        r.place_wanted_L[a] =
+            cld_ ? 3.5e-3 * std::sin(1.3 * (now - start_) + phase + 1.2 * f + 0.9 * static_cast<double>(a)) : 0;
         if (f == 0) shown[a] += (r.place_wanted_L[a] - shown[a]) * std::min(1.0, 18 / plan_.rate);
         r.place_shown_L[a] = f == 0 ? shown[a] : (cld_ ? 0.92 * r.place_wanted_L[a] : 0);
       }

@@ -1,5 +1,5 @@
-// temporary_directory: a fresh directory that goes away with the test; in memory where there is such a file system, so that a test that
-// synchronises files doesn't wait for a busy disk.
+// temporary_directory: a fresh directory that goes away with the test; in memory where there is such a file system, so
+// that a test that synchronises files doesn't wait for a busy disk.
 #pragma once
 #include <unistd.h>
 
@@ -17,8 +17,8 @@ class TemporaryDirectory {
     std::random_device random;
     const std::filesystem::path memory = "/dev/shm";
     const bool usable = ::access(memory.c_str(), W_OK) == 0;
-    path_ =
-        (usable ? memory : std::filesystem::temp_directory_path()) / ("pincer test " + std::to_string(random()) + std::to_string(random()));
+    path_ = (usable ? memory : std::filesystem::temp_directory_path()) /
+            ("pincer test " + std::to_string(random()) + std::to_string(random()));
     std::filesystem::create_directories(path_);
   }
   TemporaryDirectory(TemporaryDirectory&&) = delete;

@@ -1,5 +1,6 @@
-// thread_bus: a UsbBus without USB: a thread of its own carries packets between the host and emulated devices, in real time. It is told of
-// something to send by a flag that orders nothing, so that what the host's threads share has to be in order by itself: a sanitizer can tell.
+// thread_bus: a UsbBus without USB: a thread of its own carries packets between the host and emulated devices, in real
+// time. It is told of something to send by a flag that orders nothing, so that what the host's threads share has to be
+// in order by itself: a sanitizer can tell.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -22,7 +23,9 @@ struct ThreadBusPlugs {
 class ThreadBus final : public devices::usb::UsbBus {
  public:
   ThreadBus(devices::usb::UsbPorts& ports, devices::usb::Clock clock, ThreadBusPlugs& plugs)
-      : ports_(ports), clock_(std::move(clock)), plugs_(plugs), slots_(plugs.gadgets.size()), thread_([this] { run(); }) {}
+      : ports_(ports), clock_(std::move(clock)), plugs_(plugs), slots_(plugs.gadgets.size()), thread_([this] {
+          run();
+        }) {}
   ~ThreadBus() override {
     stop_ = true;
     thread_.join();

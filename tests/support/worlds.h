@@ -19,8 +19,10 @@ struct EngineWorld {
   double energy() const { return engine::energyOf(model, state, model.options.gravity_W); }
 };
 
-// Two needles of 20 g, 0.2 m long, one over the other, that spin by about `rate` [rad/s] and come down on a floor: the n-th of many such pairs.
-inline EngineWorld spinningNeedles(int n, double half_width, double mu, double rate, const engine::WorldOptions& options) {
+// Two needles of 20 g, 0.2 m long, one over the other, that spin by about `rate` [rad/s] and come down
+// on a floor: the n-th of many such pairs.
+inline EngineWorld spinningNeedles(int n, double half_width, double mu, double rate,
+                                   const engine::WorldOptions& options) {
   engine::WorldBuilder builder{options};
   builder.addBody({"floor", contact::HalfSpace{}, false, 0, {mu, mu}});
   std::vector<engine::BodyStart> starts{startAt(Vec3::Zero())};

@@ -1,5 +1,6 @@
-// commands: the subcommands of the program, one source file each (`sim_command.cpp`, ...). Each adds itself to `app`; when the user asks
-// for it, its callback does the work and leaves an ExitCode (tasks/app/app.h) in `exit_code`, or throws InputError (exit code 3).
+// commands: the subcommands of the program, one source file each (`sim_command.cpp`, ...). Each adds itself to
+// `app`; when the user asks for it, its callback does the work and leaves an ExitCode (tasks/app/app.h) in
+// `exit_code`, or throws InputError (exit code 3).
 #pragma once
 
 namespace CLI {

@@ -56,8 +56,8 @@ std::vector<NamedValue> changesOf(const CalibrateArguments& arguments) {
   if (!arguments.load.empty()) {
     const DeviceCalibration file = readCalibration(arguments.load);
     if (file.serial != arguments.serial) {
-      throw InputError(fmt::format("{}: it is the calibration of {}, not of {}. Load that device's file.", arguments.load, file.serial,
-                                   arguments.serial));
+      throw InputError(fmt::format("{}: it is the calibration of {}, not of {}. Load that device's file.",
+                                   arguments.load, file.serial, arguments.serial));
     }
     changes.assign(file.values.begin(), file.values.end());
   }
@@ -73,7 +73,8 @@ void requireNames(const DeviceCalibration& kept, const std::vector<NamedValue>& 
     if (kept.values.contains(name)) continue;
     std::vector<std::string> names;
     for (const auto& [known, unused] : kept.values) names.push_back(known);
-    throw InputError(fmt::format("calibration: {} has no value \"{}\". It has {}.", kept.serial, name, fmt::join(names, ", ")));
+    throw InputError(
+        fmt::format("calibration: {} has no value \"{}\". It has {}.", kept.serial, name, fmt::join(names, ", ")));
   }
 }
 
@@ -104,18 +105,23 @@ int calibrate(const CalibrateArguments& arguments) {
 
 void addDevicesCalibrate(CLI::App& devices, int& exit_code) {
   auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* command = devices.add_subcommand("calibrate", "Shows, changes, saves and loads the calibration values that a device keeps");
-  command->add_option("serial", arguments->serial, "Of the device: pincer devices list; of two with --touch")->required();
+  CLI::App* command =
+      devices.add_subcommand("calibrate", "Shows, changes, saves and loads the calibration values that a device keeps");
+  command->add_option("serial", arguments->serial, "Of the device: pincer devices list; of two with --touch")
+      ->required();
   command->add_option("--set", arguments->set, "NAME=VALUE [m or rad]; more than once for several");
   command->add_option("--save", arguments->save, "Writes all values to this file");
   command->add_option("--load", arguments->load, "Takes all values from this file first");
-  command->add_option("--devices", arguments->devices, "usb keeps its values itself; those of haply are in the file alone")
+  command
+      ->add_option("--devices", arguments->devices, "usb keeps its values itself; those of haply are in the file alone")
       ->check(CLI::IsMember({"usb", "haply"}))
       ->capture_default_str();
   command->add_flag("--here", arguments->here, "Of haply: the middle of the workspace becomes where the arm is now");
   command->add_flag("--touch", arguments->touch,
                     "Of two haply, INDEX,THUMB: where the second stands, from knobs held together at 12 places");
-  command->add_option("--calibration", arguments->calibrations, "With --touch: files of the two arms as they are known so far")
+  command
+      ->add_option("--calibration", arguments->calibrations,
+                   "With --touch: files of the two arms as they are known so far")
       ->delimiter(',');
   CLI::Option* align = command
                            ->add_option("--align", arguments->align,
@@ -127,7 +133,8 @@ void addDevicesCalibrate(CLI::App& devices, int& exit_code) {
       ->check(CLI::IsMember({"index", "thumb"}))
       ->excludes(align);
   command->add_option("--grip", arguments->grip, "Of haply: id of the VerseGrip that is the arm's handle");
-  command->add_option("--service", arguments->service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")->capture_default_str();
+  command->add_option("--service", arguments->service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")
+      ->capture_default_str();
   command->footer("\nExample:\n  pincer devices calibrate ARM1 --set base_x=0.012 --save ARM1.json");
   command->callback([arguments, &exit_code] { exit_code = calibrate(*arguments); });
 }

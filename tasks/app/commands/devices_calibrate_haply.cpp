@@ -32,7 +32,9 @@ struct Stance {
 // Where the arm is, seen through `settings`: the mean of half a second in which nobody moves it.
 Stance stanceOf(const CalibrateArguments& arguments, const HaplyArmSettings& settings) {
   const auto place = devices::haply::servicePlaceOf(arguments.service);
-  if (!place) refuseUsage(fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer", arguments.service));
+  if (!place)
+    refuseUsage(
+        fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer", arguments.service));
   return withDeviceErrors([&] {
     HaplyHost host({.service = *place, .arms = {settings}});
     host.waitReady(10);
@@ -48,7 +50,8 @@ Stance stanceOf(const CalibrateArguments& arguments, const HaplyArmSettings& set
     }
     constexpr double kStill = 2e-3;  // [m]
     if (farthest > kStill)
-      throw DeviceError(fmt::format("Inverse3 {} moved by {:.1f} mm meanwhile. Hold it still.", settings.id, 1e3 * farthest));
+      throw DeviceError(
+          fmt::format("Inverse3 {} moved by {:.1f} mm meanwhile. Hold it still.", settings.id, 1e3 * farthest));
     return stance;
   });
 }
@@ -56,7 +59,8 @@ Stance stanceOf(const CalibrateArguments& arguments, const HaplyArmSettings& set
 // The middle of the workspace becomes where the arm is now.
 void putHere(const CalibrateArguments& arguments, DeviceCalibration& calibration) {
   const HaplyArmSettings settings = haplyArmOf(calibration, "");
-  const Vec3 centre_H = settings.frame.centre_H + devices::haply::HaplyMap(settings.frame).force(stanceOf(arguments, settings).p_DF);
+  const Vec3 centre_H =
+      settings.frame.centre_H + devices::haply::HaplyMap(settings.frame).force(stanceOf(arguments, settings).p_DF);
   calibration.values["centre_x"] = centre_H.x();
   calibration.values["centre_y"] = centre_H.y();
   calibration.values["centre_z"] = centre_H.z();

@@ -10,7 +10,8 @@
 namespace pincer::tasks {
 
 void addDevicesCommand(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("devices", "Arms and displays: what is there, does it work, how it is calibrated");
+  CLI::App* command =
+      app.add_subcommand("devices", "Arms and displays: what is there, does it work, how it is calibrated");
   command->require_subcommand(1);
   addDevicesList(*command, exit_code);
   addDevicesTest(*command, exit_code);

@@ -72,7 +72,8 @@ int emulateHaply(const EmulateArguments& arguments) {
     throw DeviceError(error.what());
   }
   server->setFault(fault);
-  print("Haply's service, emulated: --service {}   arms 049D, 04BA, grips 1605, 1606. Ctrl-C ends it.\n", server->place());
+  print("Haply's service, emulated: --service {}   arms 049D, 04BA, grips 1605, 1606. Ctrl-C ends it.\n",
+        server->place());
   std::fflush(stdout);
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(arguments.seconds);
   while (!interruptFlag() && (arguments.seconds == 0 || std::chrono::steady_clock::now() < until))
@@ -108,9 +109,12 @@ void addWeart(CLI::App& emulate, int& exit_code) {
     double seconds = 0;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* weart = emulate.add_subcommand("weart", "WEART's Middleware with a TouchDIVER, on this computer; prints what it presses");
+  CLI::App* weart =
+      emulate.add_subcommand("weart", "WEART's Middleware with a TouchDIVER, on this computer; prints what it presses");
   weart->add_option("--port", arguments->port, "0: a free one")->check(CLI::Range(0, 65535))->capture_default_str();
-  weart->add_option("--seconds", arguments->seconds, "Ends by itself; 0: never [s]")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  weart->add_option("--seconds", arguments->seconds, "Ends by itself; 0: never [s]")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   weart->footer("\nExample:\n  pincer devices emulate weart");
   weart->callback([arguments, &exit_code] { exit_code = emulateWeart(arguments->port, arguments->seconds); });
 }
@@ -121,21 +125,32 @@ void addDevicesEmulate(CLI::App& devices, int& exit_code) {
   CLI::App* command = devices.add_subcommand("emulate", "Devices that aren't there, for programs that drive them");
   command->require_subcommand(1);
   auto arguments = std::make_shared<EmulateArguments>();
-  CLI::App* haply = command->add_subcommand("haply", "Haply's service with two Inverse3 and two VerseGrips, on this computer");
-  haply->add_option("--port", arguments->port, "Of commands and HTTP; 0: a free one")->check(CLI::Range(0, 65535))->capture_default_str();
+  CLI::App* haply =
+      command->add_subcommand("haply", "Haply's service with two Inverse3 and two VerseGrips, on this computer");
+  haply->add_option("--port", arguments->port, "Of commands and HTTP; 0: a free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
   haply->add_option("--events-port", arguments->events_port, "Of its events; 0: a free one")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  haply->add_flag("--hand", arguments->hand, "A simulated participant holds both, and picks up the sphere when a session arms");
-  haply->add_option("--minor", arguments->minor, "Which service 3.x it is")->check(CLI::Range(1, 9))->capture_default_str();
+  haply->add_flag("--hand", arguments->hand,
+                  "A simulated participant holds both, and picks up the sphere when a session arms");
+  haply->add_option("--minor", arguments->minor, "Which service 3.x it is")
+      ->check(CLI::Range(1, 9))
+      ->capture_default_str();
   haply
       ->add_option("--dead-man", arguments->dead_man,
                    "What becomes of a force when commands end: kept, idle after a time, zero at a closed socket")
       ->check(CLI::IsMember({"keep", "idle", "close"}))
       ->capture_default_str();
-  haply->add_option("--idle-after", arguments->idle_after, "That time [s]")->check(CLI::Range(0.001, 60.0))->capture_default_str();
-  haply->add_option("--fault", arguments->fault, "Something that goes wrong from the start; an unknown name lists them");
-  haply->add_option("--seconds", arguments->seconds, "Ends by itself; 0: never [s]")->check(CLI::Range(0.0, 1e6))->capture_default_str();
+  haply->add_option("--idle-after", arguments->idle_after, "That time [s]")
+      ->check(CLI::Range(0.001, 60.0))
+      ->capture_default_str();
+  haply->add_option("--fault", arguments->fault,
+                    "Something that goes wrong from the start; an unknown name lists them");
+  haply->add_option("--seconds", arguments->seconds, "Ends by itself; 0: never [s]")
+      ->check(CLI::Range(0.0, 1e6))
+      ->capture_default_str();
   haply->footer("\nExample:\n  pincer devices emulate haply --hand");
   haply->callback([arguments, &exit_code] { exit_code = emulateHaply(*arguments); });
   addWeart(*command, exit_code);

@@ -42,7 +42,8 @@ HaplyFound findHaply(const std::string& service) {
   constexpr double kPatience = 0.2;  // [s]
   HaplyFound found;
   const auto place = devices::haply::servicePlaceOf(service);
-  if (!place) refuseUsage(fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer", service));
+  if (!place)
+    refuseUsage(fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer", service));
   const auto answer = devices::haply::httpGet(*place, "/devices", kPatience);
   found.answers = answer.has_value();
   if (!answer) return found;
@@ -71,15 +72,16 @@ std::string tipOf(const devices::ArmCapabilities& can) {
 void listArm(const devices::usb::UsbArm& arm) {
   const auto& can = arm.capabilities();
   print("arm      {:<12} {:<16} {:<10} {:.3g} N peak, {:.3g} N continuous, {:.3g} um, {:.3g} N/mm{}\n",
-        printable(arm.deviceIdentity().serial), printable(arm.deviceIdentity().model), devices::nameOf(arm.linkState()), can.peak_force,
-        can.continuous_force, 1e6 * can.resolution, 1e-3 * can.stiffness_limit, tipOf(can));
+        printable(arm.deviceIdentity().serial), printable(arm.deviceIdentity().model), devices::nameOf(arm.linkState()),
+        can.peak_force, can.continuous_force, 1e6 * can.resolution, 1e-3 * can.stiffness_limit, tipOf(can));
 }
 
 void listDisplay(const devices::usb::UsbDisplay& display) {
   const auto& can = display.capabilities();
-  print("display  {:<12} {:<16} {:<10} +-{:.3g} x +-{:.3g} mm, {:.3g} um, {:.3g} mm/s\n", printable(display.deviceIdentity().serial),
-        printable(display.deviceIdentity().model), devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(),
-        1e6 * can.resolution, 1e3 * can.speed);
+  print("display  {:<12} {:<16} {:<10} +-{:.3g} x +-{:.3g} mm, {:.3g} um, {:.3g} mm/s\n",
+        printable(display.deviceIdentity().serial), printable(display.deviceIdentity().model),
+        devices::nameOf(display.linkState()), 1e3 * can.reach.x(), 1e3 * can.reach.y(), 1e6 * can.resolution,
+        1e3 * can.speed);
 }
 
 // Found, not opened: that would take its firmware, and homing.
@@ -91,7 +93,10 @@ void listFalcon(const devices::falcon::FalconPlace& place) {
 template <typename Device>
 void writeDevice(const Device& device, const char* kind, JsonWriter& json) {
   json.beginObject().key("kind").value(kind).key("serial").value(device.deviceIdentity().serial);
-  json.key("model").value(device.deviceIdentity().model).key("firmware").value(static_cast<int>(device.deviceIdentity().firmware));
+  json.key("model")
+      .value(device.deviceIdentity().model)
+      .key("firmware")
+      .value(static_cast<int>(device.deviceIdentity().firmware));
   json.key("state").value(devices::nameOf(device.linkState())).endObject();
 }
 
@@ -101,10 +106,22 @@ void printJson(UsbHost& host, const std::vector<devices::falcon::FalconPlace>& f
   for (const auto* arm : host.arms()) writeDevice(*arm, "arm", json);
   for (const auto* display : host.displays()) writeDevice(*display, "display", json);
   for (const auto& falcon : falcons) {
-    json.beginObject().key("kind").value("falcon").key("port").value(falcon.port).key("serial").value(falcon.serial).endObject();
+    json.beginObject()
+        .key("kind")
+        .value("falcon")
+        .key("port")
+        .value(falcon.port)
+        .key("serial")
+        .value(falcon.serial)
+        .endObject();
   }
   for (std::size_t i = 0; i < haply.devices.count; ++i)
-    json.beginObject().key("kind").value("haply").key("serial").value(std::string(haply.devices.ids[i].view())).endObject();
+    json.beginObject()
+        .key("kind")
+        .value("haply")
+        .key("serial")
+        .value(std::string(haply.devices.ids[i].view()))
+        .endObject();
   json.endArray().key("problems").beginArray();
   if (!haply.problem.empty()) json.value(haply.problem);
   for (const std::string& problem : host.problems()) json.value(problem);
@@ -115,7 +132,8 @@ int listHaplyAlone(const DevicesListArguments& arguments) {
   const HaplyFound haply = findHaply(arguments.service);
   listHaply(haply);
   if (!haply.answers)
-    print("Nobody answers as Haply's service at {}. Start it: systemctl start haply-inverse-service.service\n", arguments.service);
+    print("Nobody answers as Haply's service at {}. Start it: systemctl start haply-inverse-service.service\n",
+          arguments.service);
   return haply.answers && haply.problem.empty() ? kExitOk : kExitDevice;
 }
 
@@ -140,7 +158,8 @@ int listDevices(const DevicesListArguments& arguments) {
     for (const auto& falcon : falcons) listFalcon(falcon);
     listHaply(haply);
     for (const std::string& problem : host.problems()) print("{}\n", printableMessage(problem));
-    if (host.arms().empty() && host.displays().empty() && falcons.empty() && haply.devices.count == 0 && host.problems().empty()) {
+    if (host.arms().empty() && host.displays().empty() && falcons.empty() && haply.devices.count == 0 &&
+        host.problems().empty()) {
       print(
           "No device of pincer's USB protocol is plugged in. Check cable and power; `lsusb` must show 1209:0001 "
           "(docs/devices/setup.md).\n");

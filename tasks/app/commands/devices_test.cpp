@@ -51,8 +51,8 @@ class DeviceTest final : public ServoCycle {
     for (UsbArm* arm : arms_) arm->commandForce(Vec3::Zero());
     for (UsbDisplay* display : displays_) {
       const double angle = 2 * 3.14159265358979 * 0.5 * now;
-      display->command(
-          {false, 0.6 * Vec2(display->capabilities().reach.x() * math::cos(angle), display->capabilities().reach.y() * math::sin(angle))});
+      display->command({false, 0.6 * Vec2(display->capabilities().reach.x() * math::cos(angle),
+                                          display->capabilities().reach.y() * math::sin(angle))});
     }
     ++ticks_;
     return now < seconds_;
@@ -72,11 +72,12 @@ class DeviceTest final : public ServoCycle {
   template <typename Device>
   bool line(Device& device, const LinkCounts& before) {
     const LinkCounts now = device.counts();
-    const std::int64_t bad = now.bad - before.bad, lost = now.lost - before.lost, answers = now.answers - before.answers;
+    const std::int64_t bad = now.bad - before.bad, lost = now.lost - before.lost,
+                       answers = now.answers - before.answers;
     const bool well = device.linkState() == devices::DeviceState::kReady && bad == 0 && lost == 0 && answers > 0;
     print("{:<10} {:<26} {} frames, {} lost, {} unsound, {} of {} commands answered, last round trip {:.2f} ms\n",
-          devices::nameOf(device.linkState()), device.identity(), now.accepted - before.accepted, lost, bad, answers, ticks_,
-          1e-6 * static_cast<double>(now.round_trip_ns));
+          devices::nameOf(device.linkState()), device.identity(), now.accepted - before.accepted, lost, bad, answers,
+          ticks_, 1e-6 * static_cast<double>(now.round_trip_ns));
     const std::string faults = devices::usb::describeFaults(device.status().faults);
     if (!faults.empty()) print("  it reports: {}\n", faults);
     return well;
@@ -119,15 +120,16 @@ template <typename Device>
 std::vector<Device*> withSerial(const std::vector<Device*>& all, const std::string& serial) {
   std::vector<Device*> some;
   for (Device* device : all) {
-    if ((serial.empty() || device->deviceIdentity().serial == serial) && device->linkState() == devices::DeviceState::kReady)
+    if ((serial.empty() || device->deviceIdentity().serial == serial) &&
+        device->linkState() == devices::DeviceState::kReady)
       some.push_back(device);
   }
   return some;
 }
 
 void sayIdle(const char* what, const devices::haply::SilenceFinding& found) {
-  print("{}: {} {:.0f} ms; it moved {:.0f} mm meanwhile\n", what, found.went_idle ? "idle after" : "NOT idle within", 1e3 * found.seconds,
-        1e3 * found.moved);
+  print("{}: {} {:.0f} ms; it moved {:.0f} mm meanwhile\n", what, found.went_idle ? "idle after" : "NOT idle within",
+        1e3 * found.seconds, 1e3 * found.moved);
 }
 
 // When does an Inverse3 let go by itself? The answer decides how hard a session may push.
@@ -135,7 +137,8 @@ int testSilence(const DevicesTestArguments& arguments) {
   const auto place = devices::haply::servicePlaceOf(arguments.arms.which.service);
   if (!place || arguments.arms.devices != "haply" || arguments.serial.empty())
     refuseUsage("--silence is of one Inverse3: pincer devices test ID --devices haply --silence");
-  if (!operatorArms(arguments.arms, "The arm is going to push by itself, and nobody answers for its end. Nobody may hold it."))
+  if (!operatorArms(arguments.arms,
+                    "The arm is going to push by itself, and nobody answers for its end. Nobody may hold it."))
     return kExitOk;
   const auto check = devices::haply::checkService(*place, 1);
   if (!check.problem.empty()) throw DeviceError(check.problem);
@@ -147,11 +150,12 @@ int testSilence(const DevicesTestArguments& arguments) {
     sayIdle("after a closed connection", closed);
     if (interruptFlag()) return kExitInterrupted;
     if (!silent.went_idle || !closed.went_idle) {
-      print("A program that is killed leaves its force on for longer than that. Sessions keep to {:g} N.\n", devices::haply::kCarefulPeak);
+      print("A program that is killed leaves its force on for longer than that. Sessions keep to {:g} N.\n",
+            devices::haply::kCarefulPeak);
       return kExitDevice;
     }
-    print("For its calibration: pincer devices calibrate {} --devices haply --set idle_after={:.3f}\n", arguments.serial,
-          std::max(silent.seconds, closed.seconds));
+    print("For its calibration: pincer devices calibrate {} --devices haply --set idle_after={:.3f}\n",
+          arguments.serial, std::max(silent.seconds, closed.seconds));
   } catch (const std::runtime_error& error) {
     throw DeviceError(error.what());
   }
@@ -161,7 +165,8 @@ int testSilence(const DevicesTestArguments& arguments) {
 // Arms by themselves: rest, a small push, ages of samples, a verdict each.
 int checkArms(HandDevices& devices, int arms, const DevicesTestArguments& arguments, const ServoOptions& servo) {
   const ArmCheckOptions check{.force = std::min(std::abs(arguments.force), 0.5), .watchdog = servo.watchdog};
-  if (check.force > 0 && !operatorArms(arguments.arms, "The arm is going to move 15 mm by itself. Nobody may wear or hold it."))
+  if (check.force > 0 &&
+      !operatorArms(arguments.arms, "The arm is going to move 15 mm by itself. Nobody may wear or hold it."))
     return kExitOk;
   ArmCheck cycle(devices, arms, check);
   const ServoReport report = runServo(servo, cycle, interruptFlag());
@@ -198,7 +203,8 @@ int testArm(const DevicesTestArguments& arguments) {
 
 // Each thimble presses for a second at a third of its highest level, the others don't.
 int testPressure(const DevicesTestArguments& arguments) {
-  if (!operatorArms(arguments.arms, "The TouchDIVER is going to press index finger and thumb gently, a second each.")) return kExitOk;
+  if (!operatorArms(arguments.arms, "The TouchDIVER is going to press index finger and thumb gently, a second each."))
+    return kExitOk;
   DeviceOptions options = arguments.arms.which;
   const auto hand = openPressedHand(std::make_unique<NoArms>(), options);
   for (const std::string& line : hand->describe()) print("{}\n", line);
@@ -215,7 +221,8 @@ int testPressure(const DevicesTestArguments& arguments) {
   }
   if (interruptFlag()) return kExitInterrupted;
   const std::string complaint = hand->complaint();
-  print("Verdict: {}\n", complaint.empty() ? "the Middleware took all of it; whether it was felt is for you to say" : complaint);
+  print("Verdict: {}\n",
+        complaint.empty() ? "the Middleware took all of it; whether it was felt is for you to say" : complaint);
   return complaint.empty() ? kExitOk : kExitDevice;
 }
 
@@ -231,9 +238,10 @@ int testDevices(const DevicesTestArguments& arguments) {
   const auto displays = withSerial(host.displays(), arguments.serial);
   for (const std::string& problem : host.problems()) print("{}\n", printableMessage(problem));
   if (arms.empty() && displays.empty()) {
-    throw DeviceError(arguments.serial.empty()
-                          ? "No device is ready on USB. See what is there: pincer devices list"
-                          : fmt::format("No device {} is ready on USB. See what is there: pincer devices list", arguments.serial));
+    throw DeviceError(
+        arguments.serial.empty()
+            ? "No device is ready on USB. See what is there: pincer devices list"
+            : fmt::format("No device {} is ready on USB. See what is there: pincer devices list", arguments.serial));
   }
   DeviceTest test(host, arms, displays, arguments.seconds);
   const ServoOptions servo{.clock = ServoClock::kReal, .watchdog = 1e-3 * arguments.watchdog_ms};
@@ -254,10 +262,15 @@ void addDevicesTest(CLI::App& devices, int& exit_code) {
   auto arguments = std::make_shared<DevicesTestArguments>();
   arguments->arms.devices = "usb";
   arguments->arms.which.pressure = "127.0.0.1:13031";
-  CLI::App* command = devices.add_subcommand("test", "Streams, rests, pushes a little; counts what goes wrong, and gives a verdict");
+  CLI::App* command =
+      devices.add_subcommand("test", "Streams, rests, pushes a little; counts what goes wrong, and gives a verdict");
   command->add_option("serial", arguments->serial, "Of the device (default: all)");
-  command->add_option("--seconds", arguments->seconds, "How long [s]")->check(CLI::Range(0.1, 3600.0))->capture_default_str();
-  command->add_option("--force", arguments->force, "Pulls the arm to and fro, through the gate, so hard at most [N]; nobody may wear it")
+  command->add_option("--seconds", arguments->seconds, "How long [s]")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command
+      ->add_option("--force", arguments->force,
+                   "Pulls the arm to and fro, through the gate, so hard at most [N]; nobody may wear it")
       ->check(CLI::Range(0.0, 0.5))
       ->capture_default_str();
   command->add_option("--watchdog", arguments->watchdog_ms, "So long may the program stall before forces are cut [ms]")
@@ -266,14 +279,18 @@ void addDevicesTest(CLI::App& devices, int& exit_code) {
   command->add_option("--devices", arguments->arms.devices, "Which kind; of falcon and haply one arm at a time")
       ->check(CLI::IsMember({"usb", "falcon", "haply", "weart"}))
       ->capture_default_str();
-  command->add_option("--service", arguments->arms.which.service, "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")
+  command
+      ->add_option("--service", arguments->arms.which.service,
+                   "Where Haply's service is: HOST:PORT, or HOST:PORT:EVENTS")
       ->capture_default_str();
   command->add_option("--pressure", arguments->arms.which.pressure, "Where WEART's Middleware is: HOST:PORT")
       ->default_str("127.0.0.1:13031");
   command->add_option("--firmware", arguments->arms.which.firmware, "The Falcon's image, out of its maker's driver");
-  command->add_flag("--silence", arguments->silence, "Of haply: when does the arm let go by itself, once commands end?");
+  command->add_flag("--silence", arguments->silence,
+                    "Of haply: when does the arm let go by itself, once commands end?");
   command->add_flag("--yes", arguments->arms.yes, "Push without asking; nobody may wear or hold the arm");
-  command->footer("\nThe tactors move; without --force the arms don't.\n\nExample:\n  pincer devices test --seconds 10");
+  command->footer(
+      "\nThe tactors move; without --force the arms don't.\n\nExample:\n  pincer devices test --seconds 10");
   command->callback([arguments, &exit_code] { exit_code = testDevices(*arguments); });
 }
 

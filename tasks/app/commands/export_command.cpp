@@ -18,9 +18,9 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kExportExample = R"(
-Writes session.csv, trial.csv, sample.csv, event.csv, response.csv and reading.csv, with units in the column names, and columns.csv, which
-says what each column means; of people also hands.csv and
-input.csv, every tick of their hands.
+Writes session.csv, trial.csv, sample.csv, event.csv, response.csv and reading.csv, with units in the column
+names, and columns.csv, which says what each column means; of people also hands.csv and input.csv, every tick
+of their hands.
 
 Example:
   pincer export out/first/session.db --trial 3 --every 10 --out trial3)";
@@ -39,7 +39,8 @@ int exportSession(const ExportArguments& arguments) {
     return kExitOk;
   }
   const std::string beside = (std::filesystem::path(arguments.session).parent_path() / "csv").string();
-  for (const std::string& file : exportCsv(session, arguments.directory.empty() ? beside : arguments.directory, arguments.filter)) {
+  for (const std::string& file :
+       exportCsv(session, arguments.directory.empty() ? beside : arguments.directory, arguments.filter)) {
     print("{}\n", printablePath(file));
   }
   if (!session.warning().empty()) print(stderr, "pincer: {}\n", session.warning());
@@ -53,8 +54,10 @@ void addExportCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("export", "A session as CSV tables");
   command->add_option("session", arguments->session, "Session file")->required();
   command->add_option("--out", arguments->directory, "Directory for the tables (default: csv beside the session)");
-  command->add_option("--bids", arguments->bids, "The trials as a BIDS data set in this directory, in place of CSV tables");
-  command->add_option("--trial", arguments->trial, "Samples of this trial only, from 1")->check(wholeWithin(1, 1'000'000'000));
+  command->add_option("--bids", arguments->bids,
+                      "The trials as a BIDS data set in this directory, in place of CSV tables");
+  command->add_option("--trial", arguments->trial, "Samples of this trial only, from 1")
+      ->check(wholeWithin(1, 1'000'000'000));
   command->add_option("--every", arguments->filter.stride, "Every n-th sample only")
       ->check(wholeWithin(1, 1'000'000'000))
       ->capture_default_str();

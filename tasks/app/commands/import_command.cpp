@@ -13,8 +13,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kImportExample = R"(
-Prints a robot's MJCF file as a scene (docs/robots.md), and says on standard error what of the file has no effect here.
-Files that it names lie in its folder or below; --allow names further folders.
+Prints a robot's MJCF file as a scene (docs/robots.md), and says on standard error what of the file has no
+effect here. Files that it names lie in its folder or below; --allow names further folders.
 
 Examples:
   pincer import hand.xml > hand.json
@@ -48,9 +48,13 @@ void addImportCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ImportArguments>();
   CLI::App* command = app.add_subcommand("import", "A robot's MJCF file as a scene");
   command->add_option("file", arguments->file, "Robot (MJCF, .xml)")->required();
-  command->add_option("--keyframe", arguments->options.keyframe, "Where it starts and what its drives are told; else as drawn");
-  command->add_option("--allow", arguments->allowed, "Further folders that its files may lie in")->allow_extra_args(false);
-  command->add_option("--report", arguments->report, "Print this instead of the scene: text, or json with masses and places")
+  command->add_option("--keyframe", arguments->options.keyframe,
+                      "Where it starts and what its drives are told; else as drawn");
+  command->add_option("--allow", arguments->allowed, "Further folders that its files may lie in")
+      ->allow_extra_args(false);
+  command
+      ->add_option("--report", arguments->report,
+                   "Print this instead of the scene: text, or json with masses and places")
       ->check(CLI::IsMember({"text", "json"}));
   command->footer(kImportExample);
   command->callback([arguments, &exit_code] { exit_code = runImport(*arguments); });

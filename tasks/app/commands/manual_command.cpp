@@ -26,7 +26,8 @@ Example:
   pincer manual --out man1)";
 
 constexpr const char* kCompletionExample = R"(
-Prints what a shell sources to complete pincer's commands, options and scenes at the Tab key. The Debian package brings it.
+Prints what a shell sources to complete pincer's commands, options and scenes at the Tab key. The Debian
+package brings it.
 
 Example:
   pincer completion bash > pincer-completion.sh)";
@@ -36,7 +37,8 @@ int writeManual(const CLI::App& program, const std::string& directory) {
   const CommandNode root = commandTree(program, {"pincer"});
   const std::vector<const CommandNode*> commands = everyCommand(root);
   for (const CommandNode* command : commands) {
-    writeAtomically((std::filesystem::path(directory) / manPageName(*command)).string(), manPage(*command, kBuildInfo.version));
+    writeAtomically((std::filesystem::path(directory) / manPageName(*command)).string(),
+                    manPage(*command, kBuildInfo.version));
   }
   print("{}: {}\n", printablePath(directory), counted(static_cast<std::int64_t>(commands.size()), "page"));
   return kExitOk;

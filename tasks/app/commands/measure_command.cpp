@@ -26,12 +26,14 @@ std::vector<Measurement> selected(const std::vector<Measurement>& all, const std
   if (patterns.empty()) return all;
   for (const std::string& pattern : patterns) {
     if (std::any_of(all.begin(), all.end(), [&](const Measurement& m) { return matches(m.name, pattern); })) continue;
-    refuseUsage(fmt::format("--only {}: no measurement has a name like this. --list shows all {} of them; * stands for any text.", pattern,
-                            all.size()));
+    refuseUsage(fmt::format(
+        "--only {}: no measurement has a name like this. --list shows all {} of them; * stands for any text.", pattern,
+        all.size()));
   }
   std::vector<Measurement> chosen;
   std::copy_if(all.begin(), all.end(), std::back_inserter(chosen), [&](const Measurement& m) {
-    return std::any_of(patterns.begin(), patterns.end(), [&](const std::string& pattern) { return matches(m.name, pattern); });
+    return std::any_of(patterns.begin(), patterns.end(),
+                       [&](const std::string& pattern) { return matches(m.name, pattern); });
   });
   return chosen;
 }
@@ -54,7 +56,8 @@ void runOne(const Measurement& measurement, MeasureContext& context, std::vector
     measured = measurement.run(context);
   } catch (const Interrupted&) {       // what was whole before is shown
   } catch (const InputError& error) {  // the other figures are wanted all the same
-    measured = {unbounded(fmt::format("not measured: {}", error.what()), std::numeric_limits<double>::quiet_NaN(), "-")};
+    measured = {
+        unbounded(fmt::format("not measured: {}", error.what()), std::numeric_limits<double>::quiet_NaN(), "-")};
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (Record& record : measured) {
@@ -72,7 +75,8 @@ void addMeasureOptions(CLI::App& command, MeasureOptions& options) {
   command.add_option("--only", options.only, "Only measurements whose name holds one of these; * stands for any text");
 }
 
-int runMeasurements(const std::vector<Measurement>& measurements, const MeasureOptions& options, const std::string& title) {
+int runMeasurements(const std::vector<Measurement>& measurements, const MeasureOptions& options,
+                    const std::string& title) {
   const std::vector<Measurement> chosen = selected(measurements, options.only);
   if (options.list) {
     printNames(chosen, options.json);

@@ -35,7 +35,8 @@ void addMeshFile(CLI::App& command, MeshInput& input);
 
 // Reads with a bar on standard error where that is a terminal. Throws InputError.
 contact::TriangleMesh readWithProgress(const MeshInput& input);
-// The same for what looks at faults or mends them: keeps triangles without area, and leaves out polygons that can't be used.
+// The same for what looks at faults or mends them: keeps triangles without area,
+// and leaves out polygons that can't be used.
 struct FaultyMesh {
   contact::TriangleMesh mesh;
   int left_out = 0;       // polygons
@@ -43,9 +44,11 @@ struct FaultyMesh {
 };
 FaultyMesh readFaulty(const MeshInput& input);
 // Writes in the format of the name's ending and prints what was written and what of the mesh the format can't hold.
-void writeAndSay(const MeshInput& input, const std::string& out, const contact::TriangleMesh& mesh, const std::string& units);
+void writeAndSay(const MeshInput& input, const std::string& out, const contact::TriangleMesh& mesh,
+                 const std::string& units);
 
-// Everything that a finger will feel of a mesh: its report, and what SmoothMesh finds where the mesh is sound enough to have a smooth surface.
+// Everything that a finger will feel of a mesh: its report, and what SmoothMesh finds where the mesh
+// is sound enough to have a smooth surface.
 struct MeshCheck {
   contact::MeshReport report;  // its findings include those of the smooth surface
   bool has_surface = false;

@@ -52,17 +52,20 @@ FaultyMesh readFaulty(const MeshInput& input) {
   return faulty;
 }
 
-void writeAndSay(const MeshInput& input, const std::string& out, const contact::TriangleMesh& mesh, const std::string& units) {
+void writeAndSay(const MeshInput& input, const std::string& out, const contact::TriangleMesh& mesh,
+                 const std::string& units) {
   std::error_code no_such_file;
   if (std::filesystem::equivalent(input.file, out, no_such_file)) {
-    throw InputError(fmt::format("{}: this is the file that was read; it isn't overwritten. Give the result another name.", out));
+    throw InputError(
+        fmt::format("{}: this is the file that was read; it isn't overwritten. Give the result another name.", out));
   }
   throwIf(interruptFlag());
   const contact::WriteOptions options = {.metres_per_unit = contact::metresPerUnit(units)};
   contact::writeMesh(out, mesh, options);
   print("{}: {}, {}, in {}\n", printable(out), counted(static_cast<std::int64_t>(mesh.vertices.size()), "vertex"),
         counted(static_cast<std::int64_t>(mesh.triangles.size()), "triangle"), units);
-  for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options)) print("  - lost: {}\n", loss);
+  for (const std::string& loss : contact::lossesOf(mesh, *contact::formatOfName(out), options))
+    print("  - lost: {}\n", loss);
 }
 
 }  // namespace pincer::tasks

@@ -17,8 +17,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kMeshRoundExample = R"(
-Sharp edges and corners become arcs of the radius, tangent to both faces, with normals: write OBJ or PLY to keep these. A finger then
-keeps contact where it would fly off a sharp edge.
+Sharp edges and corners become arcs of the radius, tangent to both faces, with normals: write OBJ or PLY to
+keep these. A finger then keeps contact where it would fly off a sharp edge.
 
 Example:
   pincer mesh round-edges cube.obj round.obj --units mm --radius 1.5)";
@@ -57,7 +57,9 @@ void addMeshRoundEdges(CLI::App& mesh, int& exit_code) {
   command->add_option("--radius", arguments->radius, "Radius of the rounding [mm]")
       ->check(within({.min = 1e-3, .max = 1e3, .remedy = "In millimetres."}))
       ->capture_default_str();
-  command->add_option("--crease-angle", arguments->crease_angle, "Edges with a larger angle between facets are sharp [degrees]")
+  command
+      ->add_option("--crease-angle", arguments->crease_angle,
+                   "Edges with a larger angle between facets are sharp [degrees]")
       ->check(within({.min = 1, .max = 180, .remedy = "In degrees."}))
       ->capture_default_str();
   command->add_option("--segments", arguments->segments, "Pieces of an arc of 90 degrees")

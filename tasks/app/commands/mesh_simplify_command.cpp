@@ -16,15 +16,17 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kMeshSimplifyExample = R"(
-Fewer triangles for the same smooth surface, until so many are left or the error would be larger; without either, to 20 um, and to 10,000
-triangles whatever the error. Creases and borders are kept. The error is that of the smooth surface, as a finger feels it. Write OBJ or PLY to keep the normals.
+Fewer triangles for the same smooth surface, until so many are left or the error would be larger; without
+either, to 20 um, and to 10,000 triangles whatever the error. Creases and borders are kept. The error is that
+of the smooth surface, as a finger feels it. Write OBJ or PLY to keep the normals.
 
 Examples:
   pincer mesh simplify scan.stl part.obj --units mm
   pincer mesh simplify scan.stl part.obj --units mm --triangles 2000)";
 
 constexpr const char* kMeshSubdivideExample = R"(
-Each triangle becomes four, whose new vertices lie on the smooth surface: for programs that know flat triangles only.
+Each triangle becomes four, whose new vertices lie on the smooth surface: for programs that know flat
+triangles only.
 
 Example:
   pincer mesh subdivide part.obj fine.obj --units mm --levels 2)";
@@ -60,8 +62,9 @@ contact::SimplifiedMesh simplified(const contact::TriangleMesh& mesh, const Fine
 void simplifyFile(const FinenessArguments& arguments) {
   const contact::TriangleMesh mesh = readWithProgress(arguments.input);
   const contact::SimplifiedMesh simple = simplified(mesh, arguments);
-  print("{}: {} of {} triangles; the smooth surface is off by {:.3g} um at most, typically {:.2g} um\n", printable(arguments.input.file),
-        simple.mesh.triangles.size(), mesh.triangles.size(), 1e6 * simple.error, 1e6 * simple.typical);
+  print("{}: {} of {} triangles; the smooth surface is off by {:.3g} um at most, typically {:.2g} um\n",
+        printable(arguments.input.file), simple.mesh.triangles.size(), mesh.triangles.size(), 1e6 * simple.error,
+        1e6 * simple.typical);
   writeAndSay(arguments.input, arguments.out, simple.mesh, arguments.input.units);
 }
 
@@ -79,7 +82,9 @@ std::shared_ptr<FinenessArguments> addFinenessOptions(CLI::App& command) {
   auto arguments = std::make_shared<FinenessArguments>();
   addMeshFile(command, arguments->input);
   command.add_option("out", arguments->out, "File to write (.obj, .stl, .ply or .off)")->required();
-  command.add_option("--crease-angle", arguments->crease_angle, "Edges with a larger angle between facets are sharp [degrees]")
+  command
+      .add_option("--crease-angle", arguments->crease_angle,
+                  "Edges with a larger angle between facets are sharp [degrees]")
       ->check(within({.min = 1, .max = 180, .remedy = "In degrees."}))
       ->capture_default_str();
   command.add_flag("--ignore-normals", arguments->ignore_normals, "The crease angle decides, not the file's normals");
@@ -91,7 +96,8 @@ std::shared_ptr<FinenessArguments> addFinenessOptions(CLI::App& command) {
 void addMeshSimplify(CLI::App& mesh, int& exit_code) {
   CLI::App* command = mesh.add_subcommand("simplify", "Fewer triangles that feel the same");
   const auto arguments = addFinenessOptions(*command);
-  command->add_option("--triangles", arguments->triangles, "Stop at so many triangles")->check(wholeWithin(4, 2'000'000));
+  command->add_option("--triangles", arguments->triangles, "Stop at so many triangles")
+      ->check(wholeWithin(4, 2'000'000));
   command->add_option("--error", arguments->error, "Stop before the smooth surface is further off than this [um]")
       ->check(within({.min = 1e-3, .max = 1e5, .remedy = "In micrometres; 20 isn't felt."}));
   command->footer(kMeshSimplifyExample);

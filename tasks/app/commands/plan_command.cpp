@@ -26,10 +26,11 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kPlanExample = R"(
-What runs in a tick of a scene and in which specialised form, what is left out, and what each stage costs on this machine, measured over
-a run of the scene (begun again where it ends before the wanted number of ticks).
+What runs in a tick of a scene and in which specialised form, what is left out, and what each stage costs on
+this machine, measured over a run of the scene (begun again where it ends before the wanted number of ticks).
 
-Of the manipulation tasks, sphere-pickup and cylinder-alignment, what runs is named; times are those of a scene.
+Of the manipulation tasks, sphere-pickup and cylinder-alignment, what runs is named; times are those of a
+scene.
 
 Examples:
   pincer plan tasks/scenes/pickup.json --ticks 20000
@@ -51,7 +52,8 @@ struct PlanTimes {
 
 // Ticks through the scene, begun again as often as needed. `work` is called once per tick and steps the simulation.
 template <typename Work>
-void repeatScene(const Scene& scene, std::int64_t ticks, PlanTimes& times, Progress& progress, std::int64_t done_before, const Work& work) {
+void repeatScene(const Scene& scene, std::int64_t ticks, PlanTimes& times, Progress& progress, std::int64_t done_before,
+                 const Work& work) {
   std::optional<Simulation> simulation;
   for (std::int64_t i = 0; i < ticks && !times.interrupted; ++i) {
     if (!simulation || simulation->ticks() == scene.ticks()) simulation.emplace(scene);
@@ -108,7 +110,14 @@ std::string linesText(const std::vector<PlanLine>& plan) {
 void writeLines(const std::vector<PlanLine>& plan, JsonWriter& json) {
   json.key("plan").beginArray();
   for (const PlanLine& line : plan)
-    json.beginObject().key("part").value(line.part).key("name").value(line.name).key("form").value(line.form).endObject();
+    json.beginObject()
+        .key("part")
+        .value(line.part)
+        .key("name")
+        .value(line.name)
+        .key("form")
+        .value(line.form)
+        .endObject();
   json.endArray();
 }
 
@@ -122,8 +131,9 @@ std::string planText(const Scene& scene, const std::vector<PlanLine>& plan, cons
   out += fmt::format("\n  {:<18} {:>9} {:>9}   [us], {} ticks\n", "stage", "median", "p99.9", times.whole.count());
   for (std::size_t i = 0; i < times.stages.size(); ++i) out += timesRow(engine::kStageNames[i], times.stages[i]);
   out += timesRow("whole tick", times.whole);
-  return out + fmt::format("  Each stage's time holds {:.3f} us of the clock itself; the whole tick was timed without it.\n",
-                           1e6 * times.clock_cost);
+  return out +
+         fmt::format("  Each stage's time holds {:.3f} us of the clock itself; the whole tick was timed without it.\n",
+                     1e6 * times.clock_cost);
 }
 
 void writeTimes(const char* name, const TickTimes& times, JsonWriter& json) {
@@ -166,9 +176,13 @@ int runPlan(const PlanArguments& arguments) {
 void addPlanCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = app.add_subcommand("plan", "What runs in a tick of a scene, and what it costs");
-  command->add_option("scene", arguments->scene, "Scene file (JSON), the name of a built-in scene, sphere-pickup or cylinder-alignment")
+  command
+      ->add_option("scene", arguments->scene,
+                   "Scene file (JSON), the name of a built-in scene, sphere-pickup or cylinder-alignment")
       ->required();
-  command->add_option("--ticks", arguments->ticks, "Ticks to measure")->check(wholeWithin(1, 10'000'000))->capture_default_str();
+  command->add_option("--ticks", arguments->ticks, "Ticks to measure")
+      ->check(wholeWithin(1, 10'000'000))
+      ->capture_default_str();
   command->add_flag("--json", arguments->json, "Print the plan as JSON");
   command->footer(kPlanExample);
   command->callback([arguments, &exit_code] { exit_code = runPlan(*arguments); });

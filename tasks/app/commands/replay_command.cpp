@@ -20,11 +20,13 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kReplayExample = R"(
-Runs the trials of a session again, through the same tick, and compares every kept sample and every trial to the bit: simulated participants do
-theirs again, people's hands are given as they were recorded. Exit code 1 when something differs; then the first differing tick is named.
-A session of another version is refused: its bits may differ. With --other-version it is compared all the same.
+Runs the trials of a session again, through the same tick, and compares every kept sample and every trial to
+the bit: simulated participants do theirs again, people's hands are given as they were recorded. Exit code 1
+when something differs; then the first differing tick is named. A session of another version is refused: its
+bits may differ. With --other-version it is compared all the same.
 
-With --view the trial is played in a window, to be paused and scrubbed; --screenshot writes a picture of it at the time of --at.
+With --view the trial is played in a window, to be paused and scrubbed; --screenshot writes a picture of it at
+the time of --at.
 
 Examples:
   pincer replay out/first/session.db --trial 3
@@ -51,7 +53,8 @@ ReplayResult replayAndLook(const ReplayArguments& arguments, const SessionReader
   const auto hands = [&](HandsCycle& cycle, const TrialRecord& row) {
     options.title = fmt::format("{}, trial {}", row.task, row.trial + 1);
     TrialRecording recording = recordTrial(cycle, static_cast<std::size_t>(row.trial), trials.size(), interruptFlag());
-    showRecording(cycle.trial().scene().model.grasp, std::move(recording.history), arguments.at, options, interruptFlag());
+    showRecording(cycle.trial().scene().model.grasp, std::move(recording.history), arguments.at, options,
+                  interruptFlag());
     return recording.report;
   };
   const auto finger = [&](FingerTrial& trial) {
@@ -79,7 +82,8 @@ int replay(const ReplayArguments& arguments) {
   if (result.first) {
     const ReplayDifference& d = *result.first;
     print("Differs first in trial {}, {}: {}\n", d.trial + 1,
-          d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time), d.what);
+          d.tick < 0 ? fmt::format("after {:.3f} s", d.time) : fmt::format("tick {} ({:.3f} s)", d.tick, d.time),
+          d.what);
     for (const std::string& line : result.surroundings) print(stderr, "pincer: Not the same: {}.\n", line);
     if (result.notes.empty() && result.surroundings.empty()) {
       print(stderr, "pincer: Version, sources, compiler, flags, C library and processor are those of the session.\n");
@@ -87,7 +91,8 @@ int replay(const ReplayArguments& arguments) {
     return kExitCheckFailed;
   }
   print("The same to the bit: {}{}, {}{}\n", counted(result.trials, "trial"),
-        result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "", counted(result.samples, "sample"),
+        result.cut_short > 0 ? fmt::format(" and {} that was cut short", result.cut_short) : "",
+        counted(result.samples, "sample"),
         result.inputs > 0 ? fmt::format(", {} of a person's hands", counted(result.inputs, "tick")) : "");
   print("state_hash {}\n", sessionHash(session));
   if (!interruptFlag()) return kExitOk;
@@ -102,7 +107,8 @@ void addReplayCommand(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("replay", "A session again, compared to the bit");
   command->add_option("session", arguments->session, "Session file")->required();
   command->add_option("--trial", arguments->trial, "Only this trial, from 1")->check(wholeWithin(1, kLastTrial));
-  command->add_flag("--other-version", arguments->options.other_version, "Also a session that another version made: bits may differ");
+  command->add_flag("--other-version", arguments->options.other_version,
+                    "Also a session that another version made: bits may differ");
   addViewOptions(*command, arguments->view);
   command->add_option("--at", arguments->at, "Begin there [s]")->check(within(ranges::kTime));
   command->footer(kReplayExample);

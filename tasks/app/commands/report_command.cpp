@@ -17,7 +17,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kReportExample = R"(
-The table of a session, and a page with plots (needs gnuplot). Sessions that were killed or interrupted get theirs too.
+The table of a session, and a page with plots (needs gnuplot). Sessions that were killed or interrupted get
+theirs too.
 
 Examples:
   pincer report out/first/session.db --html first.html
@@ -70,7 +71,8 @@ void addReportCommand(CLI::App& app, int& exit_code) {
   command->add_option("session", arguments->session, "Session file")->required();
   command->add_option("--html", arguments->html, "Where to write the page (default: report.html beside the session)");
   command->add_flag("--json", arguments->json, "Print the table as JSON");
-  command->add_flag("--web", arguments->web, "Also a page beside it that plays the session in a browser, linked from the list of trials");
+  command->add_flag("--web", arguments->web,
+                    "Also a page beside it that plays the session in a browser, linked from the list of trials");
   command->footer(kReportExample);
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }

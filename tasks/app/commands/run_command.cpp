@@ -13,8 +13,9 @@ constexpr std::array kRunTasks = {addManipulationTask, addSpherePickupTask, addC
                                   addBacklashTask,     addDelayTask,        addFindingsTask};
 
 constexpr const char* kRunExample = R"(
-A simulated participant on simulated arms and contact location displays does the experiment; trials, events and samples are kept in
-DIR/session.db, a page with plots in DIR/report.html. Each experiment has its own options: pincer run EXPERIMENT --help
+A simulated participant on simulated arms and contact location displays does the experiment; trials, events
+and samples are kept in DIR/session.db, a page with plots in DIR/report.html. Each experiment has its own
+options: pincer run EXPERIMENT --help
 
 Example:
   pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first)";

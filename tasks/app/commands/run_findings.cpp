@@ -22,9 +22,10 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kFindingsExample = R"(
-Do the published findings follow from what people can feel? Simulated experiments of the published designs, each judged as the original was: of the
-five studies with one finger, and of both manipulation tasks beside controls that change one thing. The participants' parameters are the same
-whatever comes out; their hashes stand in the report. Each experiment is a session in --out; what was interrupted or killed goes on with the
+Do the published findings follow from what people can feel? Simulated experiments of the published designs,
+each judged as the original was: of the five studies with one finger, and of both manipulation tasks beside
+controls that change one thing. The participants' parameters are the same whatever comes out; their hashes
+stand in the report. Each experiment is a session in --out; what was interrupted or killed goes on with the
 same command.
 
 Examples:
@@ -79,7 +80,8 @@ void readPart(const std::string& text, StudyRuns& studies) {
   if (text.empty()) return;
   const bool read = static_cast<bool>(in >> part >> slash >> parts) && !(in >> more);
   if (!read || slash != '/' || part < 1 || parts < part || parts > 1000)
-    refuseUsage(fmt::format("findings: --part {} isn't of the form K/N with 1 <= K <= N <= 1000. Take for example 2/5.", printable(text)));
+    refuseUsage(fmt::format("findings: --part {} isn't of the form K/N with 1 <= K <= N <= 1000. Take for example 2/5.",
+                            printable(text)));
   studies.part = part;
   studies.parts = parts;
 }
@@ -93,13 +95,15 @@ int runFindingsCommand(FindingsArguments arguments) {
   const ClaimTable claims = judgeAll(studies, result);
   const bool interrupted = interruptFlag();
   if (result.variants.empty() && isEmpty(claims)) {
-    if (!interrupted) refuseUsage(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
+    if (!interrupted)
+      refuseUsage(fmt::format("findings: no variant's or study's name holds one of \"{}\".", arguments.options.only));
     print(stderr, "pincer: interrupted before an experiment was whole. The same command with --out {} goes on.\n",
           printablePath(directory));
     return kExitInterrupted;
   }
   if (interrupted)
-    print(stderr, "pincer: interrupted; these are the experiments that were whole. The same command with --out {} goes on.\n",
+    print(stderr,
+          "pincer: interrupted; these are the experiments that were whole. The same command with --out {} goes on.\n",
           printablePath(directory));
   if (!result.variants.empty()) print("{}", findingsText(result));
   print("{}", arguments.markdown ? claimTableMarkdown(claims) : claimTableText(claims));
@@ -116,26 +120,36 @@ int runFindingsCommand(FindingsArguments arguments) {
 void addFindingsTask(CLI::App& run, int& exit_code) {
   auto arguments = std::make_shared<FindingsArguments>();
   FindingsOptions& options = arguments->options;
-  CLI::App* command = run.add_subcommand("findings", "Do the published findings follow? Many simulated experiments, with controls");
+  CLI::App* command =
+      run.add_subcommand("findings", "Do the published findings follow? Many simulated experiments, with controls");
   command->add_option("--experiments", options.experiments, "Of the primary analysis")->capture_default_str();
-  command->add_option("--control-experiments", options.control_experiments, "Of every other variant")->capture_default_str();
+  command->add_option("--control-experiments", options.control_experiments, "Of every other variant")
+      ->capture_default_str();
   command->add_option("--study-experiments", arguments->studies.experiments, "Of every study with one finger")
       ->check(wholeWithin(0, 1000))
       ->capture_default_str();
-  command->add_option("--study-controls", arguments->studies.controls, "Likewise under each control: what follows must vanish")
+  command
+      ->add_option("--study-controls", arguments->studies.controls,
+                   "Likewise under each control: what follows must vanish")
       ->check(wholeWithin(0, 1000))
       ->capture_default_str();
-  command->add_option("--study-participants", arguments->studies.participants, "In each of them (default: as published)")
+  command
+      ->add_option("--study-participants", arguments->studies.participants, "In each of them (default: as published)")
       ->check(wholeWithin(2, 1000));
-  command->add_option("--part", arguments->part, "K/N: run only the K-th of N parts of the studies; the table shows all that --out holds");
+  command->add_option("--part", arguments->part,
+                      "K/N: run only the K-th of N parts of the studies; the table shows all that --out holds");
   command->add_flag("--markdown", arguments->markdown, "Print the table of claims as Markdown");
-  command->add_option("--participants", options.participants, "In an experiment of the manipulation tasks")->capture_default_str();
-  command->add_option("--pickups", options.pickups, "Of every friction, per participant and condition")->capture_default_str();
+  command->add_option("--participants", options.participants, "In an experiment of the manipulation tasks")
+      ->capture_default_str();
+  command->add_option("--pickups", options.pickups, "Of every friction, per participant and condition")
+      ->capture_default_str();
   command->add_option("--alignments", options.alignments, "Per participant and condition")->capture_default_str();
   command->add_option("--threads", options.threads, "That work at once")->capture_default_str();
   addSeedOption(*command, options.seed, "Of all that varies");
-  command->add_option("--only", options.only, "Only variants and studies whose name holds one of these, separated by commas");
-  command->add_option("--out", arguments->run.out, "Directory for report and sessions (default: out/findings-DATE-TIME)");
+  command->add_option("--only", options.only,
+                      "Only variants and studies whose name holds one of these, separated by commas");
+  command->add_option("--out", arguments->run.out,
+                      "Directory for report and sessions (default: out/findings-DATE-TIME)");
   command->add_flag("!--no-report", arguments->run.report, "Only the table");
   command->footer(kFindingsExample);
   command->callback([arguments, &exit_code] { exit_code = runFindingsCommand(*arguments); });

@@ -31,7 +31,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kSpherePickupExample = R"(
-Index finger and thumb pick up spheres of different friction that lie in a dish, with and without contact location displays.
+Index finger and thumb pick up spheres of different friction that lie in a dish, with and without contact
+location displays.
 
 Examples:
   pincer run sphere-pickup --repetitions 2 --seed 7 --out out/first
@@ -39,14 +40,15 @@ Examples:
   pincer run sphere-pickup --devices usb               on arms and displays (docs/devices/setup.md))";
 
 constexpr const char* kCylinderExample = R"(
-Index finger and thumb find the flat of an upright cylinder and turn it towards the monitor, with and without contact location displays.
+Index finger and thumb find the flat of an upright cylinder and turn it towards the monitor, with and without
+contact location displays.
 
 Example:
   pincer run cylinder-alignment --repetitions 3 --seed 7 --out out/first)";
 
 constexpr const char* kManipulationExample = R"(
-The whole study: 12 participants, both tasks in one condition, then both in the other, training before each. A session that was interrupted or
-killed goes on with --resume.
+The whole study: 12 participants, both tasks in one condition, then both in the other, training before each. A
+session that was interrupted or killed goes on with --resume.
 
 Examples:
   pincer run manipulation --seed 1 --out out/study
@@ -70,11 +72,13 @@ struct ManipulationArguments {
 contact::SurfaceVariant variantOf(const std::string& name) {
   const auto& names = contact::kSurfaceVariantNames;
   const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? contact::SurfaceVariant::smooth : static_cast<contact::SurfaceVariant>(found - names.begin());
+  return found == names.end() ? contact::SurfaceVariant::smooth
+                              : static_cast<contact::SurfaceVariant>(found - names.begin());
 }
 
 ObjectFile objectOf(const ManipulationArguments& arguments) {
-  return {arguments.object, arguments.units.empty() ? "mm" : arguments.units, arguments.size, variantOf(arguments.shading)};
+  return {arguments.object, arguments.units.empty() ? "mm" : arguments.units, arguments.size,
+          variantOf(arguments.shading)};
 }
 
 ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
@@ -84,7 +88,8 @@ ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
   options.sample_rate = arguments.run.sample_rate;
   if (!arguments.study_file.empty()) options.study = readStudyFile(arguments.study_file);
   if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
-  if (!arguments.strategy.empty()) options.study.people.strategy = arguments.strategy == "simple" ? Strategy::kSimple : Strategy::kRational;
+  if (!arguments.strategy.empty())
+    options.study.people.strategy = arguments.strategy == "simple" ? Strategy::kSimple : Strategy::kRational;
   if (arguments.free_body) options.study.alignment.pivot = false;
   if (!arguments.object.empty()) options.study.pickup.object = objectOf(arguments);
   if (arguments.object.empty() && arguments.size) {
@@ -95,7 +100,9 @@ ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
     if (arguments.shading != kExactly) options.study.pickup.shading = variantOf(arguments.shading);
     options.study.alignment.shading = options.study.pickup.shading;
   } else if (arguments.shading == kExactly) {
-    refuseUsage("run: --shading exactly is for sphere and cylinder, and --object FILE has no closed form. Leave one of them out.");
+    refuseUsage(
+        "run: --shading exactly is for sphere and cylinder, and --object FILE has no closed form. Leave one of them "
+        "out.");
   }
   return options;
 }
@@ -106,13 +113,15 @@ std::int64_t faultsOfStudy(const SessionSummary& summary) {
   return faults;
 }
 
-int showStudy(const ManipulationArguments& arguments, const std::string& directory, const ManipulationSessionResult& result) {
+int showStudy(const ManipulationArguments& arguments, const std::string& directory,
+              const ManipulationSessionResult& result) {
   const SessionReader session(directory + "/session.db");
   const SessionSummary summary = summariseSession(session);
   print("{}\n", arguments.run.json ? summaryJson(summary) : formatTable(summary));
   const auto say = [&](const std::string& line) { print(arguments.run.json ? stderr : stdout, "{}\n", line); };
   const ServoOptions& servo = arguments.run.servo;
-  const bool by_the_clock = servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
+  const bool by_the_clock =
+      servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
   if (by_the_clock) say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", printablePath(session.path())));
   say(fmt::format("state_hash {}", sessionHash(session)));
@@ -123,11 +132,14 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
     return kExitInterrupted;
   }
   if (arguments.run.report)
-    say(fmt::format("Report: {}", printablePath(writeReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html)));
+    say(fmt::format(
+        "Report: {}",
+        printablePath(writeReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html)));
   for (const std::string& words : findingWords(summary)) say("\n" + words);
   const std::int64_t faults = faultsOfStudy(summary);
   if (faults > 0)
-    say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults, printablePath(session.path())));
+    say(fmt::format("Trials that ended in a fault: {}; their events say why: pincer export {}", faults,
+                    printablePath(session.path())));
   return faults > 0 ? kExitCheckFailed : kExitOk;
 }
 
@@ -138,7 +150,8 @@ struct Stage {
   std::unique_ptr<TerminalPerson> terminal;
 };
 
-// Somebody who takes part in a study reads its pages and answers its questions; who only tries, or goes on in a session without answers, doesn't.
+// Somebody who takes part in a study reads its pages and answers its questions; who only tries, or goes
+// on in a session without answers, doesn't.
 bool isParticipant(const ManipulationArguments& arguments) {
   if (arguments.devices.devices == "sim") return false;
   return arguments.person || (arguments.resume && !SessionReader(arguments.run.out + "/session.db").survey().empty());
@@ -152,7 +165,8 @@ std::int64_t personOf(const ManipulationArguments& arguments, const Manipulation
                           counted(study.participants, "participant"), study.participants));
 }
 
-Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOptions& options, const std::atomic<bool>& interrupted) {
+Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOptions& options,
+               const std::atomic<bool>& interrupted) {
   Stage stage;
   const std::string& choice = arguments.devices.devices;
   if (arguments.view.view) options.servo.clock = ServoClock::kPaced;
@@ -172,13 +186,14 @@ Stage setStage(const ManipulationArguments& arguments, ManipulationSessionOption
       };
       if (isParticipant(arguments)) {
         options.host.show = [person = stage.terminal.get()](const StudyPage& page) { return person->show(page); };
-        options.host.ask = [person = stage.terminal.get()](const AskedQuestion& question) { return person->ask(question); };
+        options.host.ask = [person = stage.terminal.get()](const AskedQuestion& question) {
+          return person->ask(question);
+        };
       }
     }
     AnswerBox* keys = stage.window ? &stage.window->keys() : &stage.terminal->keys();
-    options.host.hands = [devices = stage.devices.get(), keys, oldest = kOldestSample * options.servo.watchdog](HandTrial& trial) {
-      return std::make_unique<LiveHands>(trial, *devices, oldest, keys);
-    };
+    options.host.hands = [devices = stage.devices.get(), keys, oldest = kOldestSample * options.servo.watchdog](
+                             HandTrial& trial) { return std::make_unique<LiveHands>(trial, *devices, oldest, keys); };
     options.host.arm = [asked = arguments.devices, devices = stage.devices.get()](const std::string& why) {
       const std::string complaint = devices->complaint();
       return operatorArms(asked, complaint.empty() ? why : why + "\n" + complaint);
@@ -205,7 +220,8 @@ int runManipulation(const ManipulationArguments& arguments) {
     return showStudy(arguments, directory, result);
   };
   if (arguments.resume) {
-    if (arguments.run.out.empty()) refuseUsage("run: --resume needs --out DIR, the directory of the session to go on with.");
+    if (arguments.run.out.empty())
+      refuseUsage("run: --resume needs --out DIR, the directory of the session to go on with.");
     ManipulationSessionOptions options = optionsOf(arguments);
     const Stage stage = setStage(arguments, options, interrupted);
     const auto result = resumeManipulationSession(options, arguments.run.out + "/session.db", interrupted, progress);
@@ -229,7 +245,9 @@ int runManipulation(const ManipulationArguments& arguments) {
 }
 
 void addShadingOption(CLI::App& command, ManipulationArguments& arguments) {
-  command.add_option("--shading", arguments.shading, "How fingers feel the object's mesh (default: smooth); exactly: the closed form")
+  command
+      .add_option("--shading", arguments.shading,
+                  "How fingers feel the object's mesh (default: smooth); exactly: the closed form")
       ->check(CLI::IsMember({"smooth", "facet", "force", "smooth_published", kExactly}));
 }
 
@@ -239,8 +257,10 @@ void addPickupOptions(CLI::App& command, ManipulationArguments& arguments) {
   command.add_option("--friction", pickup.frictions, "Static frictions of the object")->capture_default_str();
   command.add_option("--mass", pickup.mass, "Of the object [kg]")->capture_default_str();
   command.add_option("--radius", pickup.radius, "Of the sphere [m]")->capture_default_str();
-  command.add_option("--object", arguments.object, "Closed mesh (OBJ, STL, PLY or OFF) to pick up in place of the sphere");
-  command.add_option("--units", arguments.units, "Length unit of the mesh (default: mm)")->check(CLI::IsMember({"m", "cm", "mm", "in"}));
+  command.add_option("--object", arguments.object,
+                     "Closed mesh (OBJ, STL, PLY or OFF) to pick up in place of the sphere");
+  command.add_option("--units", arguments.units, "Length unit of the mesh (default: mm)")
+      ->check(CLI::IsMember({"m", "cm", "mm", "in"}));
   command.add_option("--size", arguments.size, "Scales the mesh to this largest dimension, in place of --units [m]");
   addShadingOption(command, arguments);
 }
@@ -260,11 +280,12 @@ CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* wh
   command->add_option("--condition", arguments->condition, "What the fingers feel")
       ->check(CLI::IsMember({"force", "cld+force", "both"}))
       ->capture_default_str();
-  command->add_option("--participants", arguments->study.participants, "How many simulated participants")->capture_default_str();
-  command->add_option(
-      "--person", arguments->person,
-      "Which of the participants a person is, from 1: decides the order of conditions, and asks the study's questions (default: 1, and "
-      "none is asked)");
+  command->add_option("--participants", arguments->study.participants, "How many simulated participants")
+      ->capture_default_str();
+  command->add_option("--person", arguments->person,
+                      "Which of the participants a person is, from 1: decides the order of conditions, and asks the "
+                      "study's questions (default: 1, and "
+                      "none is asked)");
   command->add_option("--strategy", arguments->strategy, "Of simulated participants (default: rational)")
       ->check(CLI::IsMember({"rational", "simple"}));
   addSeedOption(*command, arguments->study.seed, "Of all that varies; the same seed gives the same session");
@@ -284,9 +305,9 @@ void addSpherePickupTask(CLI::App& run, int& exit_code) {
   arguments->study.tasks = {HandTask::kPickup};
   arguments->study.participants = 1;
   arguments->study.training.pickups = 0;
-  addPickupOptions(
-      *addManipulationCommand(run, "sphere-pickup", "Pick up spheres of different friction", kSpherePickupExample, arguments, exit_code),
-      *arguments);
+  addPickupOptions(*addManipulationCommand(run, "sphere-pickup", "Pick up spheres of different friction",
+                                           kSpherePickupExample, arguments, exit_code),
+                   *arguments);
 }
 
 void addCylinderAlignmentTask(CLI::App& run, int& exit_code) {
@@ -294,16 +315,19 @@ void addCylinderAlignmentTask(CLI::App& run, int& exit_code) {
   arguments->study.tasks = {HandTask::kAlignment};
   arguments->study.participants = 1;
   arguments->study.training.alignments = 0;
-  addAlignmentOptions(*addManipulationCommand(run, "cylinder-alignment", "Find the flat of a cylinder and turn it to the monitor",
-                                              kCylinderExample, arguments, exit_code),
-                      *arguments);
+  addAlignmentOptions(
+      *addManipulationCommand(run, "cylinder-alignment", "Find the flat of a cylinder and turn it to the monitor",
+                              kCylinderExample, arguments, exit_code),
+      *arguments);
 }
 
 void addManipulationTask(CLI::App& run, int& exit_code) {
   auto arguments = std::make_shared<ManipulationArguments>();
-  CLI::App* command = addManipulationCommand(run, "manipulation", "The published study: both tasks, 12 participants, training",
-                                             kManipulationExample, arguments, exit_code);
-  command->add_option("--study", arguments->study_file, "Every parameter from this study file; counts over other options");
+  CLI::App* command =
+      addManipulationCommand(run, "manipulation", "The published study: both tasks, 12 participants, training",
+                             kManipulationExample, arguments, exit_code);
+  command->add_option("--study", arguments->study_file,
+                      "Every parameter from this study file; counts over other options");
   command->add_option("--write-study", arguments->write_study, "Writes the study file and does nothing else");
 }
 

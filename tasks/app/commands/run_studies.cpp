@@ -55,34 +55,41 @@ Study studyOf(Study study, const StudyArguments& arguments) {
 // Of a session that is to go on: its parameters, whoever takes part being the same as today.
 template <class Study>
 Study resumedStudy(const std::string& task, Study study, const StudyArguments& arguments) {
-  if (arguments.run.out.empty()) refuseUsage("run: --resume needs --out DIR, the directory of the session to go on with.");
+  if (arguments.run.out.empty())
+    refuseUsage("run: --resume needs --out DIR, the directory of the session to go on with.");
   if (!arguments.study_file.empty() || arguments.participants || arguments.seed)
-    refuseUsage("run: --resume goes on with the session's own parameters. Leave out --study, --participants and --seed.");
+    refuseUsage(
+        "run: --resume goes on with the session's own parameters. Leave out --study, --participants and --seed.");
   const SessionReader session(arguments.run.out + "/session.db");
   const SessionInfo& info = session.info();
   if (info.task != task)
-    throw InputError(fmt::format("{}: a session of {}, not of {}. Resume it as that.", session.path(), info.task, task));
-  if (session.complete()) throw InputError(session.path() + ": the session is complete; there is nothing to go on with.");
+    throw InputError(
+        fmt::format("{}: a session of {}, not of {}. Resume it as that.", session.path(), info.task, task));
+  if (session.complete())
+    throw InputError(session.path() + ": the session is complete; there is nothing to go on with.");
   parseStudy(info.protocol_json, session.path() + ": protocol", study);
   study.seed = info.seed;
   const bool with_people = arguments.devices.devices != "sim";
   if (with_people != personOf(info).has_value()) {
     throw InputError(fmt::format("{}: the session is of {}. Resume it with --devices {}.", session.path(),
-                                 with_people ? "simulated participants" : "a person", with_people ? "sim" : "mouse, or the devices worn"));
+                                 with_people ? "simulated participants" : "a person",
+                                 with_people ? "sim" : "mouse, or the devices worn"));
   }
   if (!with_people && participantsJson(study) != info.participants_json)
-    throw InputError(session.path() + ": other participants began it than this version simulates. Go on with the version that began it: " +
-                     info.version + ".");
+    throw InputError(
+        session.path() +
+        ": other participants began it than this version simulates. Go on with the version that began it: " +
+        info.version + ".");
   return study;
 }
 
 int strideOf(const RunOptions& options) {
   const int rate = options.sample_rate;
   if (rate >= 1 && rate <= 1000 && 1000 % rate == 0) return 1000 / rate;
-  refuseUsage(
-      fmt::format("run: --sample-rate {} is out of range: a whole number in [1, 1000] Hz that divides 1000. Take for example 1000, "
-                  "200, 50 or 20.",
-                  rate));
+  refuseUsage(fmt::format(
+      "run: --sample-rate {} is out of range: a whole number in [1, 1000] Hz that divides 1000. Take for example 1000, "
+      "200, 50 or 20.",
+      rate));
 }
 
 int showStudy(const StudyArguments& arguments, const std::string& directory, const StudyOutcome& outcome) {
@@ -90,7 +97,8 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   const StudySummary summary = summariseStudy(session, session.responses());
   print("{}\n", arguments.run.json ? studySummaryJson(summary) : formatStudyTable(summary));
   const auto say = [&](const std::string& line) { print(arguments.run.json ? stderr : stdout, "{}\n", line); };
-  const bool by_the_clock = arguments.run.servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
+  const bool by_the_clock =
+      arguments.run.servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
   if (by_the_clock) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
   if (!by_the_clock) say(throughputText(static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate));
   say(fmt::format("Session: {}", printablePath(session.path())));
@@ -101,8 +109,9 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
     return kExitInterrupted;
   }
   if (arguments.run.report)
-    say(fmt::format("Report: {}",
-                    printablePath(writeStudyReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html)));
+    say(fmt::format(
+        "Report: {}",
+        printablePath(writeStudyReport(session, directory + "/report.html", {.interrupted = &interruptFlag()}).html)));
   std::int64_t unanswered = 0;
   for (const StudyCondition& c : summary.conditions) unanswered += c.unanswered;
   return unanswered > 0 ? kExitCheckFailed : kExitOk;
@@ -119,7 +128,8 @@ struct FingerCast {
 // A person on devices: its finger is theirs, and the operator at the terminal switches forces on.
 void wearDevices(const StudyArguments& arguments, const ServoOptions& servo, FingerCast& cast) {
   AnswerBox& keys = cast.window ? cast.window->keys() : cast.terminal->keys();
-  cast.host.finger = [devices = cast.devices.get(), &keys, oldest = kOldestSample * servo.watchdog](const FingerPlace& place) {
+  cast.host.finger = [devices = cast.devices.get(), &keys,
+                      oldest = kOldestSample * servo.watchdog](const FingerPlace& place) {
     return std::make_unique<LiveFinger>(place, *devices, keys, oldest);
   };
   cast.host.arm = [asked = arguments.devices, devices = cast.devices.get()](const std::string& why) {
@@ -128,7 +138,8 @@ void wearDevices(const StudyArguments& arguments, const ServoOptions& servo, Fin
   };
 }
 
-// Somebody who takes part in a study answers its questions; who only tries, or goes on in a session without answers, doesn't.
+// Somebody who takes part in a study answers its questions; who only tries, or goes
+// on in a session without answers, doesn't.
 bool isParticipant(const StudyArguments& arguments) {
   return arguments.person || (arguments.resume && !SessionReader(arguments.run.out + "/session.db").survey().empty());
 }
@@ -151,7 +162,9 @@ std::unique_ptr<FingerCast> castOf(const std::string& task, const StudyArguments
   }
   if (!cast->window) {
     cast->terminal = std::make_unique<TerminalPerson>(servo, interruptFlag());
-    cast->host.serve = [person = cast->terminal.get()](FingerTrial& trial, const TrialPlace& place) { return person->serve(trial, place); };
+    cast->host.serve = [person = cast->terminal.get()](FingerTrial& trial, const TrialPlace& place) {
+      return person->serve(trial, place);
+    };
     cast->host.show = [person = cast->terminal.get()](const StudyPage& page) { return person->show(page); };
     cast->host.ask = [person = cast->terminal.get()](const AskedQuestion& question) { return person->ask(question); };
   }
@@ -164,12 +177,14 @@ std::unique_ptr<FingerCast> castOf(const std::string& task, const StudyArguments
 std::int64_t personNumber(const StudyArguments& arguments, int participants) {
   const std::int64_t person = arguments.person.value_or(1);
   if (person >= 1 && person <= participants) return person - 1;
-  refuseUsage(fmt::format("run: --person {} isn't one of the study's {} participants. Give 1 to {}, or more --participants.", person,
-                          participants, participants));
+  refuseUsage(
+      fmt::format("run: --person {} isn't one of the study's {} participants. Give 1 to {}, or more --participants.",
+                  person, participants, participants));
 }
 
 template <class Study, class MakeExperiment>
-int runStudyTask(const std::string& task, const Study& published, const StudyArguments& arguments, const MakeExperiment& make) {
+int runStudyTask(const std::string& task, const Study& published, const StudyArguments& arguments,
+                 const MakeExperiment& make) {
   const std::atomic<bool>& interrupted = interruptFlag();
   const Study study = arguments.resume ? resumedStudy(task, published, arguments) : studyOf(published, arguments);
   if (arguments.print_study) {
@@ -188,10 +203,11 @@ int runStudyTask(const std::string& task, const Study& published, const StudyArg
   session.waits = served.run.servo.clock != ServoClock::kReal;
   const bool with_people = arguments.devices.devices != "sim";
   if (with_people)
-    session.host.person = arguments.resume ? personOf(SessionReader(session.path).info()) : personNumber(arguments, study.participants);
-  session.info =
-      studySessionInfo(task, study.seed, studyJson(study), with_people ? personJson(*session.host.person) : participantsJson(study),
-                       served.run.servo, arguments.run.sample_rate, with_people ? arguments.devices.devices : "simulated");
+    session.host.person =
+        arguments.resume ? personOf(SessionReader(session.path).info()) : personNumber(arguments, study.participants);
+  session.info = studySessionInfo(
+      task, study.seed, studyJson(study), with_people ? personJson(*session.host.person) : participantsJson(study),
+      served.run.servo, arguments.run.sample_rate, with_people ? arguments.devices.devices : "simulated");
   std::unique_ptr<Progress> line = with_people ? nullptr : std::make_unique<Progress>("study", 1000);
   const StudyOutcome outcome = runStudySession(experiment, session, interrupted, [&](const StudyProgress& p) {
     if (line) line->update(std::lround(1000 * p.share));
@@ -207,13 +223,15 @@ std::shared_ptr<StudyArguments> addStudyTask(CLI::App& run, const std::string& t
   command = run.add_subcommand(task, what);
   command->add_option("--participants", arguments->participants, "How many simulated participants (default: 12)");
   addSeedOption(*command, arguments->seed, "Of all that varies; the same seed gives the same session", 1);
-  command->add_option("--study", arguments->study_file, "File with parameters that differ from the published design (JSON)");
-  command->add_flag("--print-study", arguments->print_study, "Print all parameters as JSON with what they mean, and run nothing");
+  command->add_option("--study", arguments->study_file,
+                      "File with parameters that differ from the published design (JSON)");
+  command->add_flag("--print-study", arguments->print_study,
+                    "Print all parameters as JSON with what they mean, and run nothing");
   command->add_flag("--resume", arguments->resume, "Go on with the interrupted or killed session in --out");
-  command->add_option(
-      "--person", arguments->person,
-      "Which of the participants the person is, from 1: decides the order of conditions, and asks the study's questions (default: 1, and "
-      "none is asked)");
+  command->add_option("--person", arguments->person,
+                      "Which of the participants the person is, from 1: decides the order of conditions, and asks the "
+                      "study's questions (default: 1, and "
+                      "none is asked)");
   addRunOptions(*command, arguments->run);
   addDeviceOptions(*command, arguments->devices);
   addTrialViewOptions(*command, arguments->view);
@@ -229,7 +247,9 @@ void addArcTask(CLI::App& run, int& exit_code, const ArcStudy& published, const 
   CLI::App* command = nullptr;
   const auto arguments = addStudyTask(run, published.task, what, more, command);
   command->callback([arguments, published, &exit_code] {
-    const auto make = [](const ArcStudy& s, const ServoOptions& servo, int stride) { return ArcExperiment(s, servo, stride); };
+    const auto make = [](const ArcStudy& s, const ServoOptions& servo, int stride) {
+      return ArcExperiment(s, servo, stride);
+    };
     exit_code = runStudyTask(published.task, published, *arguments, make);
   });
 }
@@ -238,7 +258,8 @@ void addArcTask(CLI::App& run, int& exit_code, const ArcStudy& published, const 
 
 void addSmoothnessTask(CLI::App& run, int& exit_code) {
   addArcTask(run, exit_code, smoothnessStudy(), "From how many segments on does a polygon feel like a circle?",
-             "A finger strokes a polygon and a circle and says which was rougher, with facets, force shading and tactile shading.");
+             "A finger strokes a polygon and a circle and says which was rougher, with facets, force shading and "
+             "tactile shading.");
 }
 
 void addBacklashTask(CLI::App& run, int& exit_code) {
@@ -253,19 +274,22 @@ void addDelayTask(CLI::App& run, int& exit_code) {
 
 void addShapeTask(CLI::App& run, int& exit_code) {
   CLI::App* command = nullptr;
-  const auto arguments =
-      addStudyTask(run, "shape-identification", "Which of seven solids is it?",
-                   "A finger feels solids, shaded or not, with and without a contact location display, and names them.", command);
+  const auto arguments = addStudyTask(
+      run, "shape-identification", "Which of seven solids is it?",
+      "A finger feels solids, shaded or not, with and without a contact location display, and names them.", command);
   command->callback([arguments, &exit_code] {
-    const auto make = [](const ShapeStudy& s, const ServoOptions& servo, int stride) { return ShapeExperiment(s, servo, stride); };
+    const auto make = [](const ShapeStudy& s, const ServoOptions& servo, int stride) {
+      return ShapeExperiment(s, servo, stride);
+    };
     exit_code = runStudyTask("shape-identification", ShapeStudy{}, *arguments, make);
   });
 }
 
 void addLocalisationTask(CLI::App& run, int& exit_code) {
   CLI::App* command = nullptr;
-  const auto arguments = addStudyTask(run, "repeated-localisation", "Where on the fingerpad is the tactor?",
-                                      "The tactor goes to one of five places; the participant names the place felt.", command);
+  const auto arguments =
+      addStudyTask(run, "repeated-localisation", "Where on the fingerpad is the tactor?",
+                   "The tactor goes to one of five places; the participant names the place felt.", command);
   command->callback([arguments, &exit_code] {
     const auto make = [](const LocalisationStudy& s, const ServoOptions& servo, int stride) {
       return LocalisationExperiment(s, servo, stride);

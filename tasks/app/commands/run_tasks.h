@@ -1,5 +1,6 @@
-// run_tasks: the experiments of `pincer run`, one source file each (`run_sphere_pickup.cpp`, ...). Each adds itself to the command `run`;
-// when the user asks for it, its callback does the work and leaves an ExitCode (tasks/app/app.h) in `exit_code`, or throws InputError.
+// run_tasks: the experiments of `pincer run`, one source file each (`run_sphere_pickup.cpp`, ...). Each adds itself
+// to the command `run`; when the user asks for it, its callback does the work and leaves an ExitCode
+// (tasks/app/app.h) in `exit_code`, or throws InputError.
 #pragma once
 
 namespace CLI {

@@ -45,7 +45,8 @@ std::vector<std::string> kindNames() {
 
 void printSchema(const std::string& name, bool markdown) {
   if (name == kSessionTables)
-    return markdown ? print("{}\nMade by `pincer schema {} --markdown`.\n", columnsMarkdown(), name) : print("{}", columnsCsv());
+    return markdown ? print("{}\nMade by `pincer schema {} --markdown`.\n", columnsMarkdown(), name)
+                    : print("{}", columnsCsv());
   for (const FileKind& kind : kFileKinds) {
     if (kind.name != name) continue;
     const std::string schema = kind.schema();
@@ -63,7 +64,8 @@ void addSchemaCommand(CLI::App& app, int& exit_code) {
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
-      "schema", "Every key of a scene or study file: a JSON Schema for editors, or tables to read; every column of a session");
+      "schema",
+      "Every key of a scene or study file: a JSON Schema for editors, or tables to read; every column of a session");
   command
       ->add_option("file", arguments->name,
                    "scene, the study: manipulation, delay-discrimination, ...; session: its tables and their columns")

@@ -27,8 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kShareExample = R"(
-One HTML file that plays the session or scene in three dimensions in any browser, without pincer and without a network. A session is replayed
-first, and the page says whether it came again to the bit.
+One HTML file that plays the session or scene in three dimensions in any browser, without pincer and without a
+network. A session is replayed first, and the page says whether it came again to the bit.
 
 Examples:
   pincer share pickup --out pickup.html
@@ -53,7 +53,8 @@ std::optional<std::string> sessionAt(const std::string& path) {
 
 int shareScene(const ShareArguments& arguments) {
   if (arguments.trial || arguments.other_version) {
-    refuseUsage(fmt::format("share: --trial and --other-version are for sessions, and {} is a scene", printable(arguments.source)));
+    refuseUsage(fmt::format("share: --trial and --other-version are for sessions, and {} is a scene",
+                            printable(arguments.source)));
   }
   Scene scene = readSceneOrBuiltin(arguments.source);
   if (!scene.remarks.empty()) print(stderr, "{}", scene.remarks);
@@ -65,8 +66,10 @@ int shareScene(const ShareArguments& arguments) {
   Simulation simulation(std::move(scene));
   MeshTable meshes;
   Progress progress("share", simulation.scene().ticks());
-  page.recordings.push_back(recordScene(simulation, name, meshes, interruptFlag(), [&](std::int64_t done) { progress.update(done); }));
-  page.notes.push_back(fmt::format("state_hash {} after {}.", hashText(simulation.state().world), counted(simulation.ticks(), "tick")));
+  page.recordings.push_back(
+      recordScene(simulation, name, meshes, interruptFlag(), [&](std::int64_t done) { progress.update(done); }));
+  page.notes.push_back(
+      fmt::format("state_hash {} after {}.", hashText(simulation.state().world), counted(simulation.ticks(), "tick")));
   writePage(page, meshes, arguments.out.empty() ? name + ".html" : arguments.out);
   return kExitOk;
 }
@@ -79,7 +82,8 @@ int shareSession(const ShareArguments& arguments, const std::string& path) {
   options.other_version = arguments.other_version;
   if (arguments.trial) options.trial = *arguments.trial - 1;
   const std::string beside = (fs::path(path).parent_path() / "replay.html").string();
-  const SessionPage page = writeSessionPage(session, options, arguments.title, arguments.out.empty() ? beside : arguments.out);
+  const SessionPage page =
+      writeSessionPage(session, options, arguments.title, arguments.out.empty() ? beside : arguments.out);
   return page.same ? kExitOk : kExitCheckFailed;
 }
 
@@ -88,13 +92,19 @@ int shareSession(const ShareArguments& arguments, const std::string& path) {
 void addShareCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ShareArguments>();
   CLI::App* command = app.add_subcommand("share", "A session or scene as a web page that anyone can play");
-  command->add_option("source", arguments->source, "Session file or its directory; scene file, or name of a built-in scene")->required();
-  command->add_option("-o,--out", arguments->out, "Where to write the page (default: replay.html beside the session, SCENE.html here)");
+  command
+      ->add_option("source", arguments->source,
+                   "Session file or its directory; scene file, or name of a built-in scene")
+      ->required();
+  command->add_option("-o,--out", arguments->out,
+                      "Where to write the page (default: replay.html beside the session, SCENE.html here)");
   command->add_option("--title", arguments->title, "Of the page (default: the scene's name, the session's task)");
-  command->add_option("--trial", arguments->trial, "Only this trial, from 1 (default: all)")->check(wholeWithin(1, 1'000'000'000));
+  command->add_option("--trial", arguments->trial, "Only this trial, from 1 (default: all)")
+      ->check(wholeWithin(1, 1'000'000'000));
   command->add_option("--duration", arguments->scene.duration, "Of a scene: simulated time in place of the scene's [s]")
       ->check(within(ranges::kDuration));
-  command->add_flag("--other-version", arguments->other_version, "Also a session that another version made: bits may differ");
+  command->add_flag("--other-version", arguments->other_version,
+                    "Also a session that another version made: bits may differ");
   command->footer(kShareExample);
   command->callback([arguments, &exit_code] {
     requirePageShell();

@@ -41,28 +41,31 @@ void writePage(WebPage& page, const MeshTable& meshes, const std::string& out, s
   page.made_by = programText();
   const std::string html = htmlOf(page, meshes);
   writeAtomically(out, html);
-  print(say, "{}: {}, {:.2f} MB\n", printablePath(out), counted(static_cast<std::int64_t>(page.recordings.size()), "recording"),
+  print(say, "{}: {}, {:.2f} MB\n", printablePath(out),
+        counted(static_cast<std::int64_t>(page.recordings.size()), "recording"),
         1e-6 * static_cast<double>(html.size()));
   if (html.size() > kLargestPage) {
-    print(
-        stderr,
-        "pincer: this is more than {:.0f} MB even with {:.0f} pictures a second. Share one trial (--trial), a shorter run (--duration), or "
-        "meshes of fewer triangles (pincer mesh simplify).\n",
-        1e-6 * static_cast<double>(kLargestPage), kFewestPictures);
+    print(stderr,
+          "pincer: this is more than {:.0f} MB even with {:.0f} pictures a second. Share one trial (--trial), a "
+          "shorter run (--duration), or "
+          "meshes of fewer triangles (pincer mesh simplify).\n",
+          1e-6 * static_cast<double>(kLargestPage), kFewestPictures);
   }
 }
 
-SessionPage writeSessionPage(const SessionReader& session, const ReplayOptions& options, const std::string& title, const std::string& out,
-                             std::FILE* say) {
+SessionPage writeSessionPage(const SessionReader& session, const ReplayOptions& options, const std::string& title,
+                             const std::string& out, std::FILE* say) {
   MeshTable meshes;
   std::unique_ptr<Progress> line;
-  SharedSession shared = recordSession(session, options, meshes, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
-    if (!line) line = std::make_unique<Progress>("trials", total);
-    line->update(done);
-  });
+  SharedSession shared =
+      recordSession(session, options, meshes, interruptFlag(), [&](std::int64_t done, std::int64_t total) {
+        if (!line) line = std::make_unique<Progress>("trials", total);
+        line->update(done);
+      });
   line.reset();
   throwIf(interruptFlag());
-  if (shared.recordings.empty()) throw InputError(fmt::format("{}: no trial of it can be replayed.", printablePath(session.path())));
+  if (shared.recordings.empty())
+    throw InputError(fmt::format("{}: no trial of it can be replayed.", printablePath(session.path())));
   WebPage page;
   page.title = title.empty() ? session.info().task : title;
   page.recordings = std::move(shared.recordings);

@@ -20,8 +20,9 @@ struct SessionPage {
   bool same = false;                 // the replay was the session to the bit; otherwise what differs was printed
 };
 
-// Replays the session with a line of progress. `title` empty: the session's task. Throws InputError where no trial can be replayed, and Interrupted.
-SessionPage writeSessionPage(const SessionReader& session, const ReplayOptions& options, const std::string& title, const std::string& out,
-                             std::FILE* say = stdout);
+// Replays the session with a line of progress. `title` empty: the session's task. Throws InputError where
+// no trial can be replayed, and Interrupted.
+SessionPage writeSessionPage(const SessionReader& session, const ReplayOptions& options, const std::string& title,
+                             const std::string& out, std::FILE* say = stdout);
 
 }  // namespace pincer::tasks

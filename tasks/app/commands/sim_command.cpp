@@ -20,8 +20,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kSimExample = R"(
-Runs the bodies and fingers of a scene file (docs/scenes.md), shows where they end up, and checks what the scene expects.
-Exit code 1 if an expectation fails.
+Runs the bodies and fingers of a scene file (docs/scenes.md), shows where they end up, and checks what the
+scene expects. Exit code 1 if an expectation fails.
 
 Examples:
   pincer sim tasks/scenes/s4_pinch.json --out pinch.csv --every 0.1
@@ -38,8 +38,8 @@ struct SimArguments {
 };
 
 std::string endedEarly(const Simulation& simulation) {
-  return fmt::format("The window was closed at {:g} s of {:g} s: what is expected later wasn't judged.\n", simulation.time(),
-                     static_cast<double>(simulation.scene().ticks()) * simulation.scene().options.h);
+  return fmt::format("The window was closed at {:g} s of {:g} s: what is expected later wasn't judged.\n",
+                     simulation.time(), static_cast<double>(simulation.scene().ticks()) * simulation.scene().options.h);
 }
 
 int watch(Simulation& simulation, const SimArguments& arguments, const std::atomic<bool>& interrupted) {
@@ -59,14 +59,17 @@ int runOne(const SimArguments& arguments, const std::string& file) {
   if (!scene.remarks.empty()) print(stderr, "{}", scene.remarks);
   asUsage([&] { applyOptions(arguments.options, scene); });
   Simulation simulation(std::move(scene));
-  const std::atomic<bool>& interrupted = interruptFlag();  // until now there was nothing to end cleanly: a signal ends the program at once
+  // until now there was nothing to end cleanly: a signal ends the program at once
+  const std::atomic<bool>& interrupted = interruptFlag();
   if (arguments.view.view) return watch(simulation, arguments, interrupted);
   SimResult result = [&] {
     Progress progress("sim", simulation.scene().ticks());
     return runScene(simulation, arguments.options, interrupted, [&](std::int64_t done) { progress.update(done); });
   }();
-  if (!arguments.view.screenshot.empty()) writePng(pictureOf(simulation, arguments.view.as_operator), arguments.view.screenshot);
-  print("{}", arguments.json ? simJson(simulation, arguments.options, result) : simText(simulation, arguments.options, result));
+  if (!arguments.view.screenshot.empty())
+    writePng(pictureOf(simulation, arguments.view.as_operator), arguments.view.screenshot);
+  print("{}", arguments.json ? simJson(simulation, arguments.options, result)
+                             : simText(simulation, arguments.options, result));
   if (result.interrupted) return kExitInterrupted;
   return result.broke || result.log.anyFailed() ? kExitCheckFailed : kExitOk;
 }
@@ -100,10 +103,12 @@ void addSimCommand(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->options.csv, "Write the recorded quantities to this CSV file");
   command->add_flag("--grasp", arguments->options.grasp,
                     "Say how well the fingers hold each body at the end: slip margins, force closure, epsilon");
-  command->add_flag("--awake", arguments->options.awake, "Compute every tick, also those that would repeat the last one");
+  command->add_flag("--awake", arguments->options.awake,
+                    "Compute every tick, also those that would repeat the last one");
   addViewOptions(*command, arguments->view);
-  command->add_flag("--from-operator", arguments->view.as_operator,
-                    "Look from where the operator stands, in place of where most is seen; a scene's camera goes before both");
+  command->add_flag(
+      "--from-operator", arguments->view.as_operator,
+      "Look from where the operator stands, in place of where most is seen; a scene's camera goes before both");
   command->add_option("--devices", arguments->devices, "With --view: who moves the fingers, the scene or your mouse")
       ->check(CLI::IsMember({"scene", "mouse"}))
       ->capture_default_str();

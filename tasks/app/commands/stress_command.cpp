@@ -12,7 +12,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kStressExample = R"(
-Random worlds, class by class: what must hold whatever happens is checked in every tick. Exit code 1 if anything unflagged fails.
+Random worlds, class by class: what must hold whatever happens is checked in every tick. Exit code 1 if
+anything unflagged fails.
 
 Examples:
   pincer stress                                          200 worlds of each class
@@ -30,11 +31,15 @@ void addStressCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<StressArguments>();
   CLI::App* command = app.add_subcommand("stress", "Random, hostile worlds by seed");
   addMeasureOptions(*command, arguments->measure);
-  command->add_option("--seeds", arguments->stress.seeds, "Worlds per class")->check(wholeWithin(1, 100'000'000))->capture_default_str();
-  addSeedOption(*command, arguments->stress.first_seed, "The first seed; after the last, 18446744073709551615, comes 0");
+  command->add_option("--seeds", arguments->stress.seeds, "Worlds per class")
+      ->check(wholeWithin(1, 100'000'000))
+      ->capture_default_str();
+  addSeedOption(*command, arguments->stress.first_seed,
+                "The first seed; after the last, 18446744073709551615, comes 0");
   command->footer(kStressExample);
-  command->callback(
-      [arguments, &exit_code] { exit_code = runMeasurements(stressMeasurements(arguments->stress), arguments->measure, "stress"); });
+  command->callback([arguments, &exit_code] {
+    exit_code = runMeasurements(stressMeasurements(arguments->stress), arguments->measure, "stress");
+  });
 }
 
 }  // namespace pincer::tasks

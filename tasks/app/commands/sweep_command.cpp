@@ -25,14 +25,16 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kSweepExample = R"(
-Runs a scene (docs/scenes.md), or a study of simulated participants (docs/experiments.md), once for each value of some of its numbers, and prints
-what came of it (docs/sweeps.md). PATH names the number as messages do; in a scene a body, joint or finger may stand for its place.
+Runs a scene (docs/scenes.md), or a study of simulated participants (docs/experiments.md), once for each value
+of some of its numbers, and prints what came of it (docs/sweeps.md). PATH names the number as messages do; in
+a scene a body, joint or finger may stand for its place.
 
   --vary PATH=FROM:TO:N        N values, evenly          --vary PATH=A,B,C        these
   --vary PATH=FROM:TO:N:log    in equal ratios           --cases FILE.csv         paths in the first line, then a case per line
 
-Several are crossed, or with --zip taken in step. With --out every finished case is safe at once: what is killed goes on with --resume. --shard
-I/N runs one share, `pincer sweep merge` joins the shares, and --for parallel or slurm prints a file that has them run.
+Several are crossed, or with --zip taken in step. With --out every finished case is safe at once: what is
+killed goes on with --resume. --shard I/N runs one share, `pincer sweep merge` joins the shares, and --for
+parallel or slurm prints a file that has them run.
 
 Examples:
   pincer sweep s4_pinch --vary sphere.material.mu_s=0.1:0.5:9 --vary duration=1 --measure sphere.p_z
@@ -78,10 +80,12 @@ SweepJob jobOf(const SweepArguments& arguments) {
 void printTable(const SweepTable& table, const SweepArguments& arguments) {
   print("{}", sweepText(table));
   for (std::size_t i = 0; i < table.results.size(); ++i) {
-    if (!table.results[i].error.empty()) print(stderr, "pincer: case {}: {}\n", i, printableMessage(table.results[i].error));
+    if (!table.results[i].error.empty())
+      print(stderr, "pincer: case {}: {}\n", i, printableMessage(table.results[i].error));
   }
   if (arguments.out.empty()) return;
-  for (const std::string& path : writeSweep(table, arguments.out, arguments.outputFormat())) print("{}\n", printablePath(path));
+  for (const std::string& path : writeSweep(table, arguments.out, arguments.outputFormat()))
+    print("{}\n", printablePath(path));
 }
 
 int runCases(SweepJob& job, const SweepArguments& arguments, SweepStore* store) {
@@ -126,7 +130,9 @@ int merge(const SweepArguments& arguments) {
 // The command as it was given, without what a shard's command adds.
 std::vector<std::string> commandOf(const SweepArguments& arguments) {
   std::vector<std::string> command{"pincer", "sweep", arguments.what};
-  const auto add = [&](const char* option, const std::string& value) { command.insert(command.end(), {option, value}); };
+  const auto add = [&](const char* option, const std::string& value) {
+    command.insert(command.end(), {option, value});
+  };
   for (const std::string& text : arguments.vary) add("--vary", text);
   if (arguments.zip) command.emplace_back("--zip");
   if (!arguments.cases.empty()) add("--cases", arguments.cases);
@@ -155,20 +161,27 @@ int sweep(SweepArguments& arguments) {
   if (arguments.vary.empty() == arguments.cases.empty()) refuseUsage("sweep: --vary is required, or --cases; not both");
   if (!arguments.machines.empty()) return printMachineFile(arguments);
   if (!arguments.shard.empty()) arguments.options.shard = asUsage([&] { return parseShard(arguments.shard); });
-  if (arguments.out.empty() && (arguments.resume || !arguments.shard.empty())) refuseUsage("sweep: --resume and --shard need --out");
+  if (arguments.out.empty() && (arguments.resume || !arguments.shard.empty()))
+    refuseUsage("sweep: --resume and --shard need --out");
   SweepJob job = jobOf(arguments);
   std::unique_ptr<SweepStore> store;
-  if (!arguments.out.empty()) store = std::make_unique<SweepStore>(arguments.out, job, arguments.options.shard, arguments.resume);
+  if (!arguments.out.empty())
+    store = std::make_unique<SweepStore>(arguments.out, job, arguments.options.shard, arguments.resume);
   return runCases(job, arguments, store.get());
 }
 
 void addShareOptions(CLI::App& command, SweepArguments& arguments) {
   command.add_option("--shard", arguments.shard, "Only the I-th of N shares of the cases, as 2/7");
   command.add_flag("--resume", arguments.resume, "Go on with what is in --out, if anything is");
-  command.add_option("--for", arguments.machines, "Print a file that has the shards run: for GNU parallel, or a Slurm job array")
+  command
+      .add_option("--for", arguments.machines,
+                  "Print a file that has the shards run: for GNU parallel, or a Slurm job array")
       ->check(CLI::IsMember({"parallel", "slurm"}));
-  command.add_option("--shards", arguments.plan.shards, "With --for: how many")->check(wholeWithin(1, 100'000))->capture_default_str();
-  command.add_option("--time-limit", arguments.plan.time_limit, "With --for slurm: of each shard")->capture_default_str();
+  command.add_option("--shards", arguments.plan.shards, "With --for: how many")
+      ->check(wholeWithin(1, 100'000))
+      ->capture_default_str();
+  command.add_option("--time-limit", arguments.plan.time_limit, "With --for slurm: of each shard")
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -177,20 +190,25 @@ void addSweepCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SweepArguments>();
   CLI::App* command = app.add_subcommand("sweep", "A scene or study for many values of some of its numbers");
   command
-      ->add_option(
-          "what", arguments->what,
-          "Scene file (JSON), name of a built-in scene, sphere-pickup, cylinder-alignment, manipulation, or a study with one finger; or "
-          "merge")
+      ->add_option("what", arguments->what,
+                   "Scene file (JSON), name of a built-in scene, sphere-pickup, cylinder-alignment, manipulation, or a "
+                   "study with one finger; or "
+                   "merge")
       ->required();
   command->add_option("folders", arguments->merged, "Of merge: the shards' folders, in any order");
-  command->add_option("--vary", arguments->vary, "PATH=FROM:TO:N, PATH=FROM:TO:N:log or PATH=A,B,C; any number of times")
+  command
+      ->add_option("--vary", arguments->vary, "PATH=FROM:TO:N, PATH=FROM:TO:N:log or PATH=A,B,C; any number of times")
       ->expected(1)
       ->take_all();
   command->add_flag("--zip", arguments->zip, "Take the values of all --vary in step, instead of every combination");
-  command->add_option("--cases", arguments->cases, "In place of --vary: a CSV file, paths in its first line, then a case per line");
-  command->add_option("--measure", arguments->measures,
-                      "Of a scene: a quantity at the end, or with :min, :max over the whole run (default: those that it records)");
-  command->add_option("--participants", arguments->study.participants, "Of a study")->check(wholeWithin(1, 1000))->capture_default_str();
+  command->add_option("--cases", arguments->cases,
+                      "In place of --vary: a CSV file, paths in its first line, then a case per line");
+  command->add_option(
+      "--measure", arguments->measures,
+      "Of a scene: a quantity at the end, or with :min, :max over the whole run (default: those that it records)");
+  command->add_option("--participants", arguments->study.participants, "Of a study")
+      ->check(wholeWithin(1, 1000))
+      ->capture_default_str();
   addSeedOption(*command, arguments->study.seed, "Of a study");
   command->add_option("--threads", arguments->options.threads, "That work at once; the table is the same")
       ->check(wholeWithin(1, 256))

@@ -25,9 +25,9 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kTestExample = R"(
-Runs every scene that expects something (docs/scenes.md, "expect") and says which expectations fail: quantity, time, wanted, measured. Of a scene
-that fails it leaves a picture and a log in --out; the log replays it: to the bit, or the first tick that differs.
-Exit code 1 if a scene fails, 3 if one can't be read.
+Runs every scene that expects something (docs/scenes.md, "expect") and says which expectations fail: quantity,
+time, wanted, measured. Of a scene that fails it leaves a picture and a log in --out; the log replays it: to
+the bit, or the first tick that differs. Exit code 1 if a scene fails, 3 if one can't be read.
 
 Examples:
   pincer test tasks/scenes --junit report.xml
@@ -70,7 +70,8 @@ class FailureKeeper {
 void printVerdict(const SceneVerdict& verdict) {
   const std::string name = printablePath(verdict.file);
   if (verdict.isGood())
-    return print("{} {} ({})\n", good(" ok  "), name, counted(static_cast<std::int64_t>(verdict.expectations), "expectation"));
+    return print("{} {} ({})\n", good(" ok  "), name,
+                 counted(static_cast<std::int64_t>(verdict.expectations), "expectation"));
   if (!verdict.run && verdict.error.empty()) return print("  -   {}: interrupted\n", name);
   print("{} {}\n", bad("FAILS"), name);
   if (!verdict.error.empty()) print("        {}\n", printableMessage(verdict.error));
@@ -102,11 +103,14 @@ int runTest(const TestArguments& arguments) {
   options.failed = [&](const SceneVerdict& verdict, const Simulation& simulation) { keeper.keep(verdict, simulation); };
   const std::vector<SceneVerdict> verdicts = [&] {
     Progress line("scenes", static_cast<std::int64_t>(files.size()));
-    options.progress = [&](const SceneVerdict&, std::size_t done, std::size_t) { line.update(static_cast<std::int64_t>(done)); };
+    options.progress = [&](const SceneVerdict&, std::size_t done, std::size_t) {
+      line.update(static_cast<std::int64_t>(done));
+    };
     return runSceneTests(files, options, interruptFlag());
   }();
   for (const SceneVerdict& verdict : verdicts) printVerdict(verdict);
-  const auto good_ones = std::count_if(verdicts.begin(), verdicts.end(), [](const SceneVerdict& v) { return v.isGood(); });
+  const auto good_ones =
+      std::count_if(verdicts.begin(), verdicts.end(), [](const SceneVerdict& v) { return v.isGood(); });
   print("{} of {} as expected\n", good_ones, counted(static_cast<std::int64_t>(verdicts.size()), "scene"));
   if (!arguments.junit.empty()) writeAtomically(arguments.junit, junitText(verdicts));
   return exitCodeOf(verdicts);
@@ -118,13 +122,16 @@ void addTestCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<TestArguments>();
   CLI::App* command = app.add_subcommand("test", "Scenes as tests: every scene that expects something");
   command->add_option("paths", arguments->paths, "Scene files, folders of them, names of built-in scenes");
-  command->add_option("--junit", arguments->junit, "Write the verdicts to this file, as CI servers read them (JUnit XML)");
+  command->add_option("--junit", arguments->junit,
+                      "Write the verdicts to this file, as CI servers read them (JUnit XML)");
   command->add_option("--out", arguments->out, "Folder for a picture and a log of each scene that fails");
   command->add_option("--jobs", arguments->jobs, "Scenes at once; verdicts are the same")
       ->check(wholeWithin(1, 256))
       ->capture_default_str();
-  command->add_flag("--update-hashes", arguments->update_hashes, "Write the measured hashes into the files, where others are expected");
-  command->add_option("--replay", arguments->replay, "Run the scene of such a log again, and compare to the bit")->excludes("paths");
+  command->add_flag("--update-hashes", arguments->update_hashes,
+                    "Write the measured hashes into the files, where others are expected");
+  command->add_option("--replay", arguments->replay, "Run the scene of such a log again, and compare to the bit")
+      ->excludes("paths");
   command->footer(kTestExample);
   command->callback([arguments, &exit_code] { exit_code = runTest(*arguments); });
 }

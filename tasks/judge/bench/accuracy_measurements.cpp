@@ -32,7 +32,8 @@ std::vector<Record> sphereErrors(int level, double position_bound) {
     position = std::max(position, std::abs(c.p_BS.norm() - kR));
     direction = std::max(direction, angleBetween(c.n_B, d));
   }
-  return {atMost("position error", 1e6 * position, "um", position_bound), unbounded("direction error", direction / kDegree, "deg")};
+  return {atMost("position error", 1e6 * position, "um", position_bound),
+          unbounded("direction error", direction / kDegree, "deg")};
 }
 
 // R 25 mm, 24 facets, once around at constant depth, away from the rims.
@@ -49,8 +50,8 @@ std::vector<Record> cylinderErrors() {
     direction = std::max(direction, angleBetween(c.n_B, Vec3(C.x(), C.y(), 0)));
     ripple = std::max(ripple, std::abs(c.phi + kDepth));
   }
-  return {atMost("position error", 1e6 * position, "um", 0.5), atMost("direction error", direction / kDegree, "deg", 0.02),
-          atMost("depth ripple", 1e6 * ripple, "um", 0.5)};
+  return {atMost("position error", 1e6 * position, "um", 0.5),
+          atMost("direction error", direction / kDegree, "deg", 0.02), atMost("depth ripple", 1e6 * ripple, "um", 0.5)};
 }
 
 // Round about the z axis: the radius at height z, and the latitude of its normal.
@@ -58,7 +59,8 @@ struct RoundPlace {
   double radius, z, latitude;  // [m], [m], [rad]
 };
 
-// The slowest and the fastest of the contact on its way around, over the true speed: a maximum alone would pass a contact that halts.
+// The slowest and the fastest of the contact on its way around, over the true speed: a
+// maximum alone would pass a contact that halts.
 std::vector<Record> speedsAround(const contact::TriangleMesh& mesh, const std::vector<RoundPlace>& places, double from,
                                  double slowest_bound, double fastest_bound) {
   constexpr double kDepth = 0.0015;
@@ -84,18 +86,21 @@ std::vector<Record> speedsAround(const contact::TriangleMesh& mesh, const std::v
 
 // Rows of quads between the rims: CAD programs and lathes write one.
 std::vector<Record> cylinderSpeeds(int rows) {
-  return speedsAround(contact::cylinder(0.025, 0.03, 50, rows), {{0.025, 0, 0}, {0.025, 0.02, 0}, {0.025, 0.029, 0}}, 0, 0.999, 1.001);
+  return speedsAround(contact::cylinder(0.025, 0.03, 50, rows), {{0.025, 0, 0}, {0.025, 0.02, 0}, {0.025, 0.029, 0}}, 0,
+                      0.999, 1.001);
 }
 std::vector<Record> flatSpeeds(int rows) {
   const double crease = std::acos(0.015 / 0.025) + 1e-3;
-  return speedsAround(contact::cylinderWithFlat(0.025, 0.03, 0.015, 48, rows), {{0.025, 0, 0}, {0.025, 0.02, 0}, {0.025, 0.029, 0}}, crease,
-                      0.999, 1.001);
+  return speedsAround(contact::cylinderWithFlat(0.025, 0.03, 0.015, 48, rows),
+                      {{0.025, 0, 0}, {0.025, 0.02, 0}, {0.025, 0.029, 0}}, crease, 0.999, 1.001);
 }
-// A long quad of a cone is no rectangle: its diagonal's middle isn't half way around, and no edge knows that. Refine such meshes.
+// A long quad of a cone is no rectangle: its diagonal's middle isn't half way around,
+// and no edge knows that. Refine such meshes.
 std::vector<Record> coneSpeeds(int rows, double off) {
   constexpr double kBottom = 0.03, kTaper = 0.015, kHeight = 0.04;
   std::vector<Vec2> profile = {{0, -kHeight / 2}};
-  for (int k = 0; k <= rows; ++k) profile.push_back({kBottom - kTaper * k / rows, kHeight * (static_cast<double>(k) / rows - 0.5)});
+  for (int k = 0; k <= rows; ++k)
+    profile.push_back({kBottom - kTaper * k / rows, kHeight * (static_cast<double>(k) / rows - 0.5)});
   profile.push_back({0, kHeight / 2});
   std::vector<RoundPlace> places;
   for (const double z : {-0.012, 0.0, 0.012}) {
@@ -142,7 +147,8 @@ std::vector<Record> gapsAcrossEdges(MeasureContext& context) {
       const contact::SurfaceCell cell = net.build(t);
       for (std::size_t i = 0; i < 3; ++i) {
         const contact::Neighbour other = cell.neighbours[i];
-        if (!cell.sharp[i] && other.triangle > t) widenBy(cell, i, net.build(other.triangle), static_cast<std::size_t>(other.edge), gaps);
+        if (!cell.sharp[i] && other.triangle > t)
+          widenBy(cell, i, net.build(other.triangle), static_cast<std::size_t>(other.edge), gaps);
       }
     }
     context.progress(static_cast<double>(o) / static_cast<double>(objects.size()));
@@ -150,7 +156,8 @@ std::vector<Record> gapsAcrossEdges(MeasureContext& context) {
   return {atMost("place", 1e3 * gaps.place, "mm", 1e-9), atMost("direction", gaps.direction / kDegree, "deg", 1e-9)};
 }
 
-// Steps that the published iteration takes on spheres of 80 to 320 triangles, with its best constants (gain 1, G_k = r, G_d = 0).
+// Steps that the published iteration takes on spheres of 80 to 320 triangles, with its
+// best constants (gain 1, G_k = r, G_d = 0).
 std::vector<Record> publishedIterations(MeasureContext& context) {
   std::vector<Record> records;
   for (const int level : {1, 2}) {

@@ -1,7 +1,9 @@
-// contact_bench: `pincer bench contact`: what touching a mesh costs and how well it is felt, measured against docs/benchmarks.md.
+// contact_bench: `pincer bench contact`: what touching a mesh costs and how well it is
+// felt, measured against docs/benchmarks.md.
 //
-// Object by object: iterations, failures, continuity. Against closed forms: approximation errors, per variant of shading. Costs: per query,
-// with the global guard, over the number of triangles, beside other engines. Scenes: what a haptics lab would try first.
+// Object by object: iterations, failures, continuity. Against closed forms: approximation errors, per variant
+// of shading. Costs: per query, with the global guard, over the number of triangles, beside other engines.
+// Scenes: what a haptics lab would try first.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -22,13 +24,14 @@ struct ContactBenchOptions {
 std::vector<Measurement> contactMeasurements(const ContactBenchOptions& options);
 
 // Its parts, one source file each.
-std::vector<Measurement> strokeMeasurements(const ContactBenchOptions& options);       // iterations, failures, continuity
-std::vector<Measurement> accuracyMeasurements();                                       // closed forms, gaps across edges
-std::vector<Measurement> curveMeasurements();                                          // the 2D algorithm
-std::vector<Measurement> costMeasurements(const ContactBenchOptions& options);         // nanoseconds, growth, peers
-std::vector<Measurement> shadingMeasurements(const ContactBenchOptions& options);      // the variants side by side, plots
-std::vector<Measurement> pairMeasurements();                                           // two bodies: errors, costs, names
-std::vector<Measurement> meshPairMeasurements();                                       // bodies on meshes: facets, many triangles
-std::vector<Measurement> fingerSceneMeasurements(const ContactBenchOptions& options);  // a finger that presses and drags
+std::vector<Measurement> strokeMeasurements(const ContactBenchOptions& options);   // iterations, failures, continuity
+std::vector<Measurement> accuracyMeasurements();                                   // closed forms, gaps across edges
+std::vector<Measurement> curveMeasurements();                                      // the 2D algorithm
+std::vector<Measurement> costMeasurements(const ContactBenchOptions& options);     // nanoseconds, growth, peers
+std::vector<Measurement> shadingMeasurements(const ContactBenchOptions& options);  // the variants side by side, plots
+std::vector<Measurement> pairMeasurements();                                       // two bodies: errors, costs, names
+std::vector<Measurement> meshPairMeasurements();  // bodies on meshes: facets, many triangles
+// a finger that presses and drags
+std::vector<Measurement> fingerSceneMeasurements(const ContactBenchOptions& options);
 
 }  // namespace pincer::tasks

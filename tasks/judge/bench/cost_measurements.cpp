@@ -38,7 +38,8 @@ FingerPath evenStroke(const SmoothMesh& mesh, double depth, MeasureContext& cont
 // A finger that goes along a path over a mesh, again and again.
 class Walk {
  public:
-  Walk(const SmoothMesh& mesh, const FingerPath& path, double margin = kBenchMargin) : mesh_(mesh), path_(path), margin_(margin) {}
+  Walk(const SmoothMesh& mesh, const FingerPath& path, double margin = kBenchMargin)
+      : mesh_(mesh), path_(path), margin_(margin) {}
 
   void query() {
     if (next_ == path_.centres.size()) next_ = 0;
@@ -94,7 +95,8 @@ std::vector<Record> guardCost(MeasureContext& context) {
   const auto mesh = SmoothMesh::build(contact::icosphere(0.04, 6));
   const FingerPath path = liftedBy(*mesh, evenStroke(*mesh, kPressed, context), 0.0005);
   const CallCost cost = costAlong(*mesh, path);
-  return {atMost("81,920 triangles, median", cost.median / 1000, "us", 3), atMost("81,920 triangles, p99.9", cost.p999 / 1000, "us", 10)};
+  return {atMost("81,920 triangles, median", cost.median / 1000, "us", 3),
+          atMost("81,920 triangles, p99.9", cost.p999 / 1000, "us", 10)};
 }
 
 // A name in the system's temporary directory, for as long as this lives.
@@ -121,7 +123,8 @@ struct GrowthStep {
 constexpr GrowthStep kGrowth[] = {{7, 0.5}, {22, 1.2}, {71, 3}, {224, std::numeric_limits<double>::infinity()}};
 
 // By turns: where the machine changes its speed meanwhile both change.
-double costRatio(const SmoothMesh& large, const FingerPath& over_large, const SmoothMesh& small, const FingerPath& over_small) {
+double costRatio(const SmoothMesh& large, const FingerPath& over_large, const SmoothMesh& small,
+                 const FingerPath& over_small) {
   constexpr int kRounds = 401, kQueries = 1000;
   Walk a(large, over_large), b(small, over_small);
   return ratioOfCosts([&] { a.query(kQueries); }, [&] { b.query(kQueries); }, kRounds);
@@ -151,14 +154,16 @@ std::vector<Record> growth(MeasureContext& context) {
     if (context.interrupted()) return records;
   }
   const double allowed = math::log(triangles) / math::log(20.0 * kGrowth[0].n * kGrowth[0].n);
-  records.push_back(atMost("largest over smallest mesh, by turns", costRatio(*mesh, path, *first, over_first), "-", allowed));
+  records.push_back(
+      atMost("largest over smallest mesh, by turns", costRatio(*mesh, path, *first, over_first), "-", allowed));
   return records;
 }
 
 std::vector<Record> fileCost(const BenchObject& object, MeasureContext& context) {
   const auto mesh = SmoothMesh::build(object.mesh);
   const CallCost cost = costAlong(*mesh, evenStroke(*mesh, kPressed, context));
-  return {atMost("warm query, median", cost.median / 1000, "us", 5), atMost("warm query, p99.9", cost.p999 / 1000, "us", 20)};
+  return {atMost("warm query, median", cost.median / 1000, "us", 5),
+          atMost("warm query, p99.9", cost.p999 / 1000, "us", 20)};
 }
 
 struct ReadKind {
@@ -166,8 +171,11 @@ struct ReadKind {
   const char* ending;
   bool ascii;
 };
-constexpr ReadKind kReadKinds[] = {
-    {"STL", ".stl", false}, {"PLY", ".ply", false}, {"PLY as text", ".ply", true}, {"OBJ", ".obj", false}, {"OFF", ".off", false}};
+constexpr ReadKind kReadKinds[] = {{"STL", ".stl", false},
+                                   {"PLY", ".ply", false},
+                                   {"PLY as text", ".ply", true},
+                                   {"OBJ", ".obj", false},
+                                   {"OFF", ".off", false}};
 
 // A file of a million triangles, written before and removed after.
 std::vector<Record> readCost(MeasureContext& context) {
@@ -237,8 +245,9 @@ std::vector<Record> besidePeers(int n, MeasureContext& context) {
   const auto mesh = SmoothMesh::build(triangles);
   const FingerPath path = evenStroke(*mesh, kPressed, context);
   const double mine = costAlong(*mesh, path).median;
-  std::vector<Record> records = {unbounded("pincer, smooth, median", mine / 1000, "us"),
-                                 unbounded("pincer, smooth, largest turn per tick", pincersLargestTurn(*mesh, path) * 180 / M_PI, "deg")};
+  std::vector<Record> records = {
+      unbounded("pincer, smooth, median", mine / 1000, "us"),
+      unbounded("pincer, smooth, largest turn per tick", pincersLargestTurn(*mesh, path) * 180 / M_PI, "deg")};
   for (const auto& peer : meshPeers(triangles, kBenchFinger)) {
     const PeerFigures f = figuresOf(*peer, triangles, path);
     records.push_back(unbounded(peer->name() + ", median", f.cost / 1000, "us"));
@@ -265,8 +274,8 @@ std::vector<Measurement> costMeasurements(const ContactBenchOptions& options) {
   }
   if (options.peers) {
     for (const int n : {7, 22, 71}) {
-      measurements.push_back(
-          {fmt::format("peers/sphere-{}", 20 * n * n), [n](MeasureContext& context) { return besidePeers(n, context); }});
+      measurements.push_back({fmt::format("peers/sphere-{}", 20 * n * n),
+                              [n](MeasureContext& context) { return besidePeers(n, context); }});
     }
   }
   return measurements;

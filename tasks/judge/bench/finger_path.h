@@ -1,4 +1,5 @@
-// finger_path: ways of a fingertip's centre over an object, tick by tick, as a hand would lead it; and one finger that queries along them.
+// finger_path: ways of a fingertip's centre over an object, tick by tick, as a hand would lead
+// it; and one finger that queries along them.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,7 +12,8 @@ namespace pincer::tasks {
 
 constexpr double kBenchFinger = 8e-3;  // radius r [m]
 constexpr double kBenchTick = 1e-3;    // [s]
-constexpr double kBenchMargin = 1e-3;  // further contacts nearer than this are reported, as a world's default asks for [m]
+// further contacts nearer than this are reported, as a world's default asks for [m]
+constexpr double kBenchMargin = 1e-3;
 
 // The state of one finger, and the memory that its queries use.
 struct BenchFinger {
@@ -25,10 +27,11 @@ struct BenchFinger {
 
 struct FingerPath {
   std::vector<Vec3> centres;  // p_BC at each tick [m]
-  int restart_every;          // ticks after which the finger leaves and comes down elsewhere, as a finger without memory
+  int restart_every;  // ticks after which the finger leaves and comes down elsewhere, as a finger without memory
 };
 
-// A hand that strokes: heading and speed wander, depth sways between 0 and `depth`; every `restart_every` ticks it comes down at another place.
+// A hand that strokes: heading and speed wander, depth sways between 0 and `depth`; every
+// `restart_every` ticks it comes down at another place.
 struct Stroke {
   std::int64_t ticks = 100000;
   double slowest = 0.03, fastest = 0.2;  // [m/s]

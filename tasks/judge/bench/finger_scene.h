@@ -1,7 +1,7 @@
 // finger_scene: one finger on one fixed body in a world without gravity: what a haptics lab builds first.
 //
-// The finger is a massless tip of radius 8 mm behind a spring of 1000 N/m, as in the measurements of CHAI3D that docs/benchmarks.md names; the
-// device leads it at 1 kHz.
+// The finger is a massless tip of radius 8 mm behind a spring of 1000 N/m, as in the measurements of CHAI3D that
+// docs/benchmarks.md names; the device leads it at 1 kHz.
 #pragma once
 #include "pincer/grasp/step.h"
 
@@ -22,7 +22,8 @@ class FingerScene {
 
   const Vec3& proxy() const { return state_.world.points.front().p_W; }  // centre of the fingertip on the surface [m]
   int flagged() const { return flagged_; }                               // ticks that the step complained of
-  // Between two walls that push and lock: mu > tan(alpha), pi - 2 alpha the angle between their normals (engine/world/wedge.h).
+  // Between two walls that push and lock: mu > tan(alpha), pi - 2 alpha the angle
+  // between their normals (engine/world/wedge.h).
   bool isLocked() const;
 
  private:

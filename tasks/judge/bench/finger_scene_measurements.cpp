@@ -1,4 +1,5 @@
-// The scenes on contact in which CHAI3D was measured (docs/benchmarks.md), built the same way: k 1000 N/m, 1 kHz, r 8 mm, pressed 2 mm, 100 mm/s.
+// The scenes on contact in which CHAI3D was measured (docs/benchmarks.md), built the same way: k 1000
+// N/m, 1 kHz, r 8 mm, pressed 2 mm, 100 mm/s.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,8 +26,8 @@ constexpr double kStep = 0.1 * kBenchTick;  // [m] per tick at 100 mm/s
 
 Mesh meshOf(const TriangleMesh& mesh) { return {SmoothMesh::build(mesh)}; }
 
-// Ticks after which a device that set out from rest moves evenly. A massless tip without damping rings at half the tick rate until then: its
-// direction alternates, by as much as it turns at first, and 4 % less with every tick.
+// Ticks after which a device that set out from rest moves evenly. A massless tip without damping rings at half the tick
+// rate until then: its direction alternates, by as much as it turns at first, and 4 % less with every tick.
 constexpr std::size_t kStarting = 100;
 
 // A sphere of 40 mm: the device runs around it 2 mm under the surface, the force should turn evenly.
@@ -78,7 +79,8 @@ std::vector<Record> facetedCylinder(MeasureContext&) {
   for (std::size_t i = 0; i < path.centres.size(); ++i) {
     const Vec3 f = scene.tick(path.centres[i]).f_user_W;
     if (i <= kStarting) continue;
-    const double off = math::atan2(path.centres[i].cross(f).z(), path.centres[i].head<2>().dot(f.head<2>()));  // about the axis
+    // about the axis
+    const double off = math::atan2(path.centres[i].cross(f).z(), path.centres[i].head<2>().dot(f.head<2>()));
     sum += off;
     sum2 += off * off;
     n += 1;
@@ -86,11 +88,13 @@ std::vector<Record> facetedCylinder(MeasureContext&) {
     high = std::max(high, f.norm());
   }
   const double mean = sum / n;  // half a tick's way behind the device, at any facet
-  return {atMost("direction, standard deviation", std::sqrt(std::max(0.0, sum2 / n - mean * mean)) / kDegree, "deg", 0.05),
-          atMost("force, peak to peak of its mean", 100 * (high - low) / (0.5 * (high + low)), "%", 1)};
+  return {
+      atMost("direction, standard deviation", std::sqrt(std::max(0.0, sum2 / n - mean * mean)) / kDegree, "deg", 0.05),
+      atMost("force, peak to peak of its mean", 100 * (high - low) / (0.5 * (high + low)), "%", 1)};
 }
 
-// A box whose faces share their vertices, and thereby, in a file that has them, their normals: the finger runs over an edge.
+// A box whose faces share their vertices, and thereby, in a file that has them,
+// their normals: the finger runs over an edge.
 std::vector<Record> edgeWithSharedVertices(MeasureContext&) {
   const Vec3 half(0.03, 0.03, 0.03);
   const auto mesh = SmoothMesh::build(contact::box(half));
@@ -132,9 +136,9 @@ std::vector<Record> frictionRows(MeasureContext&) {
           atMost("no friction: false tangential share", dragOverPlate(0).share, "-", 1e-9)};
 }
 
-// A hand leads a finger without friction around a closed part, always 2 mm under where that finger's tip is, and with it a second finger with
-// friction .5, which feels sqrt(1 + mu^2) as much where nothing holds it. A snag is a force above twice that, but in a groove that locks: rigid walls hold
-// there what is pulled along them or out, by any force.
+// A hand leads a finger without friction around a closed part, always 2 mm under where that finger's tip is, and with
+// it a second finger with friction .5, which feels sqrt(1 + mu^2) as much where nothing holds it. A snag is a force
+// above twice that, but in a groove that locks: rigid walls hold there what is pulled along them or out, by any force.
 std::vector<Record> dragOverPart(const TriangleMesh& triangles, MeasureContext& context) {
   constexpr double kMu = 0.5;
   constexpr int kTicks = 20000;
@@ -168,7 +172,8 @@ std::vector<Record> dragOverPart(const TriangleMesh& triangles, MeasureContext& 
           exactly("ticks that the step complained of", rough.flagged() + slippery.flagged(), "-", 0)};
 }
 
-// The same object, finger and path in every scale: what changes is the scale of the answer. Triangles down to micrometres.
+// The same object, finger and path in every scale: what changes is the scale of
+// the answer. Triangles down to micrometres.
 std::vector<Record> anyScale(MeasureContext& context) {
   const TriangleMesh triangles = contact::cylinderWithFlat(0.025, 0.03, 0.018, 40, 12);
   const auto mesh = SmoothMesh::build(triangles);
@@ -184,7 +189,8 @@ std::vector<Record> anyScale(MeasureContext& context) {
       if (i % static_cast<std::size_t>(path.restart_every) == 0) a.tracker = b.tracker = {};
       const contact::SurfaceContact x = a.on(*mesh, path.centres[i]).main();
       const contact::SurfaceContact y =
-          scaled->querySphere(scale * path.centres[i], scale * kBenchFinger, scale * kBenchMargin, b.tracker, *b.cache).main();
+          scaled->querySphere(scale * path.centres[i], scale * kBenchFinger, scale * kBenchMargin, b.tracker, *b.cache)
+              .main();
       place = std::max(place, (x.p_BS - y.p_BS / scale).norm());
       direction = std::max(direction, angleBetween(x.n_B, y.n_B));
     }
@@ -198,11 +204,13 @@ struct Pushes {
   std::int64_t count = 0, through = 0, ticks = 0;
 };
 
-// One push from `side` (+-1) of the plate towards a random place on or beyond it, up to 5 mm past the far side, and back.
+// One push from `side` (+-1) of the plate towards a random place on or beyond
+// it, up to 5 mm past the far side, and back.
 void push(FingerScene& scene, double side, Random& random, Pushes& pushes) {
   const double speed = random.uniform(0.1, 1);  // [m/s]
   const Vec3 from(random.uniform(-0.02, 0.02), random.uniform(-0.015, 0.015), side * (0.0005 + kBenchFinger + 0.003));
-  const Vec3 to(from.x() + random.uniform(-0.005, 0.005), from.y() + random.uniform(-0.005, 0.005), -side * random.uniform(0.0, 0.0055));
+  const Vec3 to(from.x() + random.uniform(-0.005, 0.005), from.y() + random.uniform(-0.005, 0.005),
+                -side * random.uniform(0.0, 0.0055));
   const int ticks = std::max(2, static_cast<int>((to - from).norm() / (speed * kBenchTick)));
   bool through = false;
   for (int i = 0; i <= 2 * ticks; ++i) {
@@ -216,7 +224,8 @@ void push(FingerScene& scene, double side, Random& random, Pushes& pushes) {
   pushes.ticks += 2 * ticks;
 }
 
-// A plate of 1 mm with fingers of 8 mm: the device goes up to 14 mm past its surface. Never may the force turn to the other side.
+// A plate of 1 mm with fingers of 8 mm: the device goes up to 14 mm past its surface.
+// Never may the force turn to the other side.
 std::vector<Record> thinWalls(MeasureContext& context) {
   constexpr int kPushes = 16000;
   const Mesh plate = meshOf(contact::gridBox({0.04, 0.03, 0.0005}, 16));
@@ -243,7 +252,8 @@ std::vector<Measurement> fingerSceneMeasurements(const ContactBenchOptions& opti
       {"scene/friction-on-a-plate", frictionRows},
       {"scene/any-scale", anyScale},
       {"scene/thin-wall", thinWalls},
-      {"scene/drag/rounded-cube", [](MeasureContext& c) { return dragOverPart(contact::roundedCube(0.02, 0.004, 3), c); }},
+      {"scene/drag/rounded-cube",
+       [](MeasureContext& c) { return dragOverPart(contact::roundedCube(0.02, 0.004, 3), c); }},
   };
   if (options.meshes.empty()) return measurements;
   for (const MeshFile& file : meshFilesIn(options.meshes)) {

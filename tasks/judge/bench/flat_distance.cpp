@@ -30,7 +30,8 @@ double distanceToTriangle(const Vec3& p, const std::array<Vec3, 3>& t) {
 double distanceToTriangles(const contact::TriangleMesh& mesh, const Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity();
   const auto corner = [&](std::int32_t v) { return mesh.vertices[static_cast<std::size_t>(v)]; };
-  for (const auto& [a, b, c] : mesh.triangles) nearest = std::min(nearest, distanceToTriangle(p, {corner(a), corner(b), corner(c)}));
+  for (const auto& [a, b, c] : mesh.triangles)
+    nearest = std::min(nearest, distanceToTriangle(p, {corner(a), corner(b), corner(c)}));
   return nearest;
 }
 

@@ -55,7 +55,8 @@ struct MeshFelt {
 };
 
 const PairPoint& deepestPoint(const PairPoints& p) {
-  return *std::min_element(p.points.begin(), p.points.begin() + p.count, [](const auto& a, const auto& b) { return a.phi < b.phi; });
+  return *std::min_element(p.points.begin(), p.points.begin() + p.count,
+                           [](const auto& a, const auto& b) { return a.phi < b.phi; });
 }
 
 MeshFelt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& context) {
@@ -63,7 +64,8 @@ MeshFelt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& cont
   const contact::PatchCacheHandle cache = contact::makePatchCache();
   PairPoints found;
   const auto ask = [&](const Shape& ball, int i) {
-    const Pose X{over.q, Vec3(-0.005 + kSlideStep * i, -0.002 + 0.35 * kSlideStep * i, kBallRadius + over.reach - kPressedBy)};
+    const Pose X{over.q,
+                 Vec3(-0.005 + kSlideStep * i, -0.002 + 0.35 * kSlideStep * i, kBallRadius + over.reach - kPressedBy)};
     contact::collideShapes(ball, Pose{}, over.solid, X, 1e-3, *cache, found);
     return found.count > 0 ? deepestPoint(found) : PairPoint{};
   };
@@ -75,7 +77,9 @@ MeshFelt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& cont
     const double gap = s.phi - exact.phi;
     const Vec3 lean = s.n_W - exact.n_W;
     felt.gap = std::max(felt.gap, std::abs(gap));
-    if (i > 0) felt.step = std::max(felt.step, std::abs(gap - gap_before)), felt.turn = std::max(felt.turn, (lean - lean_before).norm());
+    if (i > 0)
+      felt.step = std::max(felt.step, std::abs(gap - gap_before)),
+      felt.turn = std::max(felt.turn, (lean - lean_before).norm());
     gap_before = gap;
     lean_before = lean;
   }
@@ -89,10 +93,11 @@ Measurement facetsFelt(const OverBall& over) {
   return {fmt::format("pair/facets/{}", over.name), [over](MeasureContext& context) {
             const Shape mesh = contact::Mesh{contact::SmoothMesh::build(contact::geodesicSphere(kBallRadius, 7))};
             const MeshFelt felt = slideOver(mesh, over, context);
-            return std::vector<Record>{atMost("980 triangles: gap, from the ball's", 1e6 * felt.gap, "um", 1),
-                                       atMost("step of that from place to place, 0.5 um apart", 1e6 * felt.step, "um", 0.01),
-                                       atMost("turn beyond the ball's from place to place", felt.turn / kDegree, "deg", 0.001),
-                                       unbounded("median", felt.cost, "ns")};
+            return std::vector<Record>{
+                atMost("980 triangles: gap, from the ball's", 1e6 * felt.gap, "um", 1),
+                atMost("step of that from place to place, 0.5 um apart", 1e6 * felt.step, "um", 0.01),
+                atMost("turn beyond the ball's from place to place", felt.turn / kDegree, "deg", 0.001),
+                unbounded("median", felt.cost, "ns")};
           }};
 }
 
@@ -103,7 +108,8 @@ double costOfPlates(int cells) {
   const contact::PatchCacheHandle cache = contact::makePatchCache();
   PairPoints found;
   const auto ask = [&](std::int64_t i) {
-    const Pose X{quatFromRotationVector({0, 0, 0.001 * static_cast<double>(i % 700)}), Vec3(0.001, 0.002, 0.02 - kPressedBy)};
+    const Pose X{quatFromRotationVector({0, 0, 0.001 * static_cast<double>(i % 700)}),
+                 Vec3(0.001, 0.002, 0.02 - kPressedBy)};
     contact::collideShapes(plate, X, plate, Pose{}, 1e-4, *cache, found);
   };
   return costOfCalls(ask, {.warm_up = 20, .batches = 11, .calls_per_batch = 50, .single_calls = 0}).median;
@@ -113,7 +119,8 @@ std::vector<Record> measurePlates(MeasureContext&) {
   constexpr double kMost = 300;  // [us], of a tick's 1000
   const double coarse = costOfPlates(10), fine = costOfPlates(29), finest = costOfPlates(58);
   return {unbounded("plates face to face, 1200 triangles each", 1e-3 * coarse, "us"),
-          atMost("10092 triangles each", 1e-3 * fine, "us", kMost), atMost("40368 triangles each, of 10092", finest / fine, "-", 4)};
+          atMost("10092 triangles each", 1e-3 * fine, "us", kMost),
+          atMost("40368 triangles each, of 10092", finest / fine, "-", 4)};
 }
 
 }  // namespace

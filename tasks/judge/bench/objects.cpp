@@ -70,7 +70,8 @@ std::vector<MeshFile> meshFilesIn(const std::string& directory) {
       files.push_back({entry.path().stem().string(), entry.path().string()});
   }
   if (error || files.empty())
-    throw InputError(fmt::format("--meshes {}: there is no mesh file (.obj, .stl, .ply, .off) in this directory.", directory));
+    throw InputError(
+        fmt::format("--meshes {}: there is no mesh file (.obj, .stl, .ply, .off) in this directory.", directory));
   std::sort(files.begin(), files.end(), [](const MeshFile& a, const MeshFile& b) { return a.path < b.path; });
   return files;
 }
@@ -81,7 +82,8 @@ std::vector<Record> measureFile(const MeshFile& file, const std::function<std::v
     contact::requireManifold(mesh);
     return measure({file.name, ObjectKind::tight, std::move(mesh), 0});
   } catch (const InputError& refusal) {
-    const std::string reason = std::string(refusal.what()).substr(file.path.size() + 1);  // the rest is `pincer mesh info`'s to tell
+    // the rest is `pincer mesh info`'s to tell
+    const std::string reason = std::string(refusal.what()).substr(file.path.size() + 1);
     return {unbounded("refused:" + reason.substr(0, reason.find_first_of(",.;(")), 1, "-")};
   }
 }

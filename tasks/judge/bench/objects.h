@@ -32,8 +32,8 @@ struct MeshFile {
 // In alphabetical order. Throws InputError where there is none.
 std::vector<MeshFile> meshFilesIn(const std::string& directory);
 
-// Measures the mesh of a file, scaled to 80 mm and centred, for files don't tell their units; nothing is known of its hollows, so it counts as
-// `tight`. A file that can't be touched gives a single record that says why.
+// Measures the mesh of a file, scaled to 80 mm and centred, for files don't tell their units; nothing is known of its
+// hollows, so it counts as `tight`. A file that can't be touched gives a single record that says why.
 std::vector<Record> measureFile(const MeshFile& file, const std::function<std::vector<Record>(BenchObject)>& measure);
 
 const char* nameOf(ObjectKind kind);

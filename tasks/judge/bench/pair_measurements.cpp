@@ -1,5 +1,5 @@
-// Pairs of bodies: error of the contact direction and gap over random placements, judged by trying every direction (tasks/judge/exact/convex_gap.h);
-// cost begun anew and from the last tick's normal, names and normals along a slide.
+// Pairs of bodies: error of the contact direction and gap over random placements, judged by trying every direction
+// (tasks/judge/exact/convex_gap.h); cost begun anew and from the last tick's normal, names and normals along a slide.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -112,7 +112,8 @@ struct PlacedErrors {
 };
 
 // A mesh's contacts in overlap are local, each with its own normal: there only whether it is touched is asked.
-PlacedErrors errorsOver(const PairBody& a, const PairBody& b, double from, double to, int count, MeasureContext& context) {
+PlacedErrors errorsOver(const PairBody& a, const PairBody& b, double from, double to, int count,
+                        MeasureContext& context) {
   Draws draws;
   PairQuery query;
   PlacedErrors e;
@@ -139,7 +140,8 @@ PlacedErrors errorsOver(const PairBody& a, const PairBody& b, double from, doubl
 Pose sliding(const PairBody& a, const PairBody& b, std::int64_t i) {
   const double t = 1e-3 * static_cast<double>(i % 1000);
   const double top = b.name == std::string_view("hull") ? 0.02 : b.height;
-  return {quatFromRotationVector({0, 0, 0.2 * t}) * a.resting, {0.02 * (t < 0.5 ? t : 1 - t), 0.001, top + a.height + 1e-6}};
+  return {quatFromRotationVector({0, 0, 0.2 * t}) * a.resting,
+          {0.02 * (t < 0.5 ? t : 1 - t), 0.001, top + a.height + 1e-6}};
 }
 
 struct SlideFigures {
@@ -149,7 +151,8 @@ struct SlideFigures {
 };
 
 bool wasThere(const PairPoints& before, std::uint32_t feature) {
-  return std::any_of(before.points.begin(), before.points.begin() + before.count, [&](const auto& p) { return p.feature == feature; });
+  return std::any_of(before.points.begin(), before.points.begin() + before.count,
+                     [&](const auto& p) { return p.feature == feature; });
 }
 
 SlideFigures slideOf(const PairBody& a, const PairBody& b) {
@@ -201,8 +204,10 @@ std::vector<Record> measurePair(const PairBody& a, const PairBody& b, MeasureCon
       if (from >= 0) records.push_back(atMost(fmt::format("{}: gap", name), 1e6 * e.gap, "um", 1));
       continue;
     }
-    records.push_back(atMost(fmt::format("{}: gap lost by the direction, of the size", name), e.direction, "-", boxes ? 1e-6 : 1e-9));
-    records.push_back(atMost(fmt::format("{}: least gap of the points, from that along the normal", name), 1e6 * e.gap, "um", 1));
+    records.push_back(
+        atMost(fmt::format("{}: gap lost by the direction, of the size", name), e.direction, "-", boxes ? 1e-6 : 1e-9));
+    records.push_back(
+        atMost(fmt::format("{}: least gap of the points, from that along the normal", name), 1e6 * e.gap, "um", 1));
   }
   const SlideFigures f = slideOf(a, b);
   records.push_back(unbounded("sliding, begun anew, median", f.cold, "ns"));
@@ -221,8 +226,8 @@ std::vector<Measurement> pairMeasurements() {
     for (std::size_t j = i; j < bodies.size(); ++j) {
       const PairBody a = bodies[i], b = bodies[j];
       if (isHalfSpace(a.shape)) continue;
-      measurements.push_back(
-          {fmt::format("pair/{}-{}", a.name, b.name), [a, b](MeasureContext& context) { return measurePair(a, b, context); }});
+      measurements.push_back({fmt::format("pair/{}-{}", a.name, b.name),
+                              [a, b](MeasureContext& context) { return measurePair(a, b, context); }});
     }
   }
   return measurements;

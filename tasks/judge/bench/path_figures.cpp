@@ -59,7 +59,8 @@ void countTurn(const Felt& before, const Felt& now, double step, double turn_lim
 
 double PathFigures::meanIterations() const {
   double sum = 0;
-  for (std::size_t i = 0; i < by_iterations.size(); ++i) sum += static_cast<double>(i) * static_cast<double>(by_iterations[i]);
+  for (std::size_t i = 0; i < by_iterations.size(); ++i)
+    sum += static_cast<double>(i) * static_cast<double>(by_iterations[i]);
   return sum > 0 ? sum / static_cast<double>(queries) : std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -80,7 +81,8 @@ Vec3 feltDirection(const contact::SurfaceContacts& contacts) {
   return length > 0 ? Vec3(sum / length) : contacts.main().n_B;
 }
 
-PathFigures walkPath(const contact::SmoothMesh& mesh, const FingerPath& path, double turn_limit, MeasureContext& context) {
+PathFigures walkPath(const contact::SmoothMesh& mesh, const FingerPath& path, double turn_limit,
+                     MeasureContext& context) {
   PathFigures f;
   BenchFinger finger;
   Felt before;

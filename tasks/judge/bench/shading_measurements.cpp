@@ -1,4 +1,5 @@
-// The variants of shading side by side on the same sweep: what shading buys over facets and over force shading, and what it costs.
+// The variants of shading side by side on the same sweep: what shading buys over facets
+// and over force shading, and what it costs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,14 +38,16 @@ struct Sweep {
   std::string name;
   contact::TriangleMesh mesh;
   SweepPlane plane;
-  double circle = 0;      // radius of the finger's circle [m]; 0: not round, follow the smooth surface
-  double facet_jump = 0;  // what a facet's edge throws the contact by, r times the angle between facets [m]; 0: not promised
+  double circle = 0;  // radius of the finger's circle [m]; 0: not round, follow the smooth surface
+  // what a facet's edge throws the contact by, r times the angle between facets [m]; 0: not promised
+  double facet_jump = 0;
 };
 
 FingerPath pathOf(const Sweep& sweep) {
   if (sweep.circle > 0) return circleAround(sweep.plane, sweep.circle);
   const auto mesh = SmoothMesh::build(sweep.mesh);
-  return sweepAround(*mesh, sweep.plane, frameFromNormal(sweep.plane.axis).col(0), 2.5 * mesh->boundingRadius(), kDepth);
+  return sweepAround(*mesh, sweep.plane, frameFromNormal(sweep.plane.axis).col(0), 2.5 * mesh->boundingRadius(),
+                     kDepth);
 }
 
 double costOf(const SmoothMesh& mesh, const FingerPath& path) {
@@ -60,20 +63,25 @@ double costOf(const SmoothMesh& mesh, const FingerPath& path) {
 
 double largestTurn(const std::vector<Vec3>& n) {
   double largest = 0;
-  for (std::size_t i = 1; i < n.size(); ++i) largest = std::max(largest, math::atan2(n[i - 1].cross(n[i]).norm(), n[i - 1].dot(n[i])));
+  for (std::size_t i = 1; i < n.size(); ++i)
+    largest = std::max(largest, math::atan2(n[i - 1].cross(n[i]).norm(), n[i - 1].dot(n[i])));
   return largest;
 }
 
-void addRow(const Sweep& sweep, const NamedVariant& variant, const SweepTrace& trace, double cost, std::vector<Record>& records) {
+void addRow(const Sweep& sweep, const NamedVariant& variant, const SweepTrace& trace, double cost,
+            std::vector<Record>& records) {
   const std::string of = std::string(variant.name) + ": ";
   const double step = 1e3 * largestStep(trace.place);
   const bool facet = variant.variant == SurfaceVariant::facet;
-  if (facet && sweep.facet_jump > 0) {  // the baseline must be what the literature says of it, or the comparison means nothing
-    records.push_back(atMost(of + "largest step on the finger, off r theta by", std::abs(step - 1e3 * sweep.facet_jump), "mm", 0.06));
+  // the baseline must be what the literature says of it, or the comparison means nothing
+  if (facet && sweep.facet_jump > 0) {
+    records.push_back(
+        atMost(of + "largest step on the finger, off r theta by", std::abs(step - 1e3 * sweep.facet_jump), "mm", 0.06));
   }
   const bool smooth = variant.variant == SurfaceVariant::smooth;
   const auto held = static_cast<double>(trace.held);
-  records.push_back(smooth ? exactly(of + "ticks without an answer", held, "-", 0) : unbounded(of + "ticks without an answer", held, "-"));
+  records.push_back(smooth ? exactly(of + "ticks without an answer", held, "-", 0)
+                           : unbounded(of + "ticks without an answer", held, "-"));
   records.push_back(unbounded(of + "largest step on the finger per tick", step, "mm"));
   records.push_back(unbounded(of + "largest turn of the force per tick", largestTurn(trace.n) * 180 / M_PI, "deg"));
   if (sweep.circle > 0) {
@@ -103,7 +111,8 @@ std::vector<Sweep> generatedSweeps() {
   constexpr double r = kBenchFinger;
   const SweepPlane tilted{Vec3(0.3, -0.2, 1).normalized(), 0}, beside{Vec3::UnitZ(), 0.003};
   std::vector<Sweep> sweeps;
-  sweeps.push_back({"cylinder-15deg", contact::cylinder(0.025, 0.03, 24, 6), beside, 0.025 + r - kDepth, r * M_PI / 12});
+  sweeps.push_back(
+      {"cylinder-15deg", contact::cylinder(0.025, 0.03, 24, 6), beside, 0.025 + r - kDepth, r * M_PI / 12});
   sweeps.push_back({"cylinder-30deg", contact::cylinder(0.025, 0.03, 12, 6), beside, 0.025 + r - kDepth, r * M_PI / 6});
   sweeps.push_back({"sphere-320", contact::icosphere(0.02, 2), tilted, 0.02 + r - kDepth, 0});
   sweeps.push_back({"cylinder-with-flat", contact::cylinderWithFlat(0.025, 0.03, 0.018, 18, 6), beside, 0, 0});
@@ -119,12 +128,15 @@ std::vector<Measurement> shadingMeasurements(const ContactBenchOptions& options)
   const std::string out = options.out;
   for (Sweep& sweep : generatedSweeps()) {
     const auto shared = std::make_shared<const Sweep>(std::move(sweep));
-    measurements.push_back({"shading/" + shared->name, [=](MeasureContext& context) { return compare(*shared, out, context); }});
+    measurements.push_back(
+        {"shading/" + shared->name, [=](MeasureContext& context) { return compare(*shared, out, context); }});
   }
   if (options.meshes.empty()) return measurements;
   for (const MeshFile& file : meshFilesIn(options.meshes)) {
     const auto run = [=](MeasureContext& context) {
-      return measureFile(file, [&](BenchObject object) { return compare({object.name, std::move(object.mesh), {}, 0, 0}, out, context); });
+      return measureFile(file, [&](BenchObject object) {
+        return compare({object.name, std::move(object.mesh), {}, 0, 0}, out, context);
+      });
     };
     measurements.push_back({"shading/file/" + file.name, run});
   }

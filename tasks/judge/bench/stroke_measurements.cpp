@@ -11,7 +11,8 @@
 namespace pincer::tasks {
 namespace {
 
-// The turn of a contact at an edge, 5 % more than it should; in a hollow the finger's centre runs on a smaller circle than its contact.
+// The turn of a contact at an edge, 5 % more than it should; in a hollow the finger's centre
+// runs on a smaller circle than its contact.
 double turnLimit(const BenchObject& object) {
   constexpr double kSlack = 1.05;
   if (object.kind == ObjectKind::tight) return std::numeric_limits<double>::infinity();
@@ -23,7 +24,8 @@ void addContinuity(const BenchObject& object, const PathFigures& f, std::vector<
   records.push_back(atMost("largest turn, of a sharp edge's", f.largest_turn, "-", limit));
   if (object.kind != ObjectKind::tight) records.push_back(exactly("jumps", static_cast<double>(f.jumps), "-", 0));
   // Of three contacts, each deepened by 1 um per um; eased contacts as much again.
-  records.push_back(atMost("largest change of force, of a spring's", f.largest_push, "-", object.kind == ObjectKind::tight ? 6 : 2.2));
+  records.push_back(atMost("largest change of force, of a spring's", f.largest_push, "-",
+                           object.kind == ObjectKind::tight ? 6 : 2.2));
   records.push_back(unbounded("largest step on the finger per um of centre step", f.largest_place, "um"));
   records.push_back(unbounded("largest turn per um of centre step", f.largest_degrees, "deg"));
 }
@@ -37,7 +39,8 @@ std::vector<Record> recordsOf(const BenchObject& object, const PathFigures& f) {
       atMost("iterations, mean", f.meanIterations(), "-", smooth ? 1.2 : inf),
       atMost("iterations, p99.9", f.iterationsQuantile(0.999), "-", smooth ? 4 : inf),
       atMost("iterations of one contact, most", f.longest_walk, "-", smooth ? 12 : 20),
-      atMost("walks that failed, so that the tree was asked", share(f.reseeded), "-", object.kind == ObjectKind::tight ? 1e-3 : 0),
+      atMost("walks that failed, so that the tree was asked", share(f.reseeded), "-",
+             object.kind == ObjectKind::tight ? 1e-3 : 0),
       exactly("queries left without an answer", static_cast<double>(f.held), "-", 0),
       exactly("answers that aren't finite", static_cast<double>(f.not_finite), "-", 0),
   };
@@ -61,7 +64,8 @@ std::vector<Measurement> strokeMeasurements(const ContactBenchOptions& options) 
   for (BenchObject& object : generatedObjects()) {
     const std::string name = fmt::format("stroke/{}/{}", nameOf(object.kind), object.name);
     const auto shared = std::make_shared<const BenchObject>(std::move(object));
-    measurements.push_back({name, [=](MeasureContext& context) { return strokeRecords(*shared, options.queries, context); }});
+    measurements.push_back(
+        {name, [=](MeasureContext& context) { return strokeRecords(*shared, options.queries, context); }});
   }
   if (options.meshes.empty()) return measurements;
   for (const MeshFile& file : meshFilesIn(options.meshes)) {

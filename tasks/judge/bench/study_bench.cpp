@@ -46,17 +46,18 @@ Spread overObservers(const StaircaseRule& rule, int observers, MeasureContext& c
   return {mean, std::sqrt(squares / n - mean * mean), trials / observers, lost};
 }
 
-// Long enough, and in steps small enough, to forget the start and reach the point of convergence: what a study that needs the threshold
-// itself should take.
+// Long enough, and in steps small enough, to forget the start and reach the point of convergence: what a study
+// that needs the threshold itself should take.
 StaircaseRule carefulRule() {
   return {.start = 2, .large_step = 0.2, .small_step = 0.05, .large_reversals = 6, .reversals = 36, .averaged = 24};
 }
 
 std::vector<Record> staircaseRecords(const StaircaseRule& rule, int observers, double bound, MeasureContext& context) {
   const Spread s = overObservers(rule, observers, context);
-  std::vector<Record> records{atMost("bias of the 70.7 % point, of it", 100 * std::abs(s.bias), "%", bound),
-                              unbounded("with its sign", 100 * s.bias, "%"), unbounded("SD of a threshold, of it", 100 * s.sd, "%"),
-                              unbounded("trials", s.trials, "-"), exactly("staircases without a threshold", s.lost, "-", 0)};
+  std::vector<Record> records{
+      atMost("bias of the 70.7 % point, of it", 100 * std::abs(s.bias), "%", bound),
+      unbounded("with its sign", 100 * s.bias, "%"), unbounded("SD of a threshold, of it", 100 * s.sd, "%"),
+      unbounded("trials", s.trials, "-"), exactly("staircases without a threshold", s.lost, "-", 0)};
   return records;
 }
 
@@ -64,11 +65,17 @@ Measurement staircaseMeasurement(const std::string& name, const StaircaseRule& r
   return {name, [=](MeasureContext& context) { return staircaseRecords(rule, observers, bound, context); }};
 }
 
-// Thresholds that the published designs' staircases make of the same observers: theirs are shorter. Levels in units of the threshold.
+// Thresholds that the published designs' staircases make of the same observers: theirs are
+// shorter. Levels in units of the threshold.
 std::vector<Measurement> publishedStaircases(int observers) {
   constexpr double kNoPromise = std::numeric_limits<double>::infinity();
-  const StaircaseRule smoothness{
-      .start = 2, .large_step = 0.4, .small_step = 0.1, .large_reversals = 3, .reversals = 11, .averaged = 6, .lowest = 0.01};
+  const StaircaseRule smoothness{.start = 2,
+                                 .large_step = 0.4,
+                                 .small_step = 0.1,
+                                 .large_reversals = 3,
+                                 .reversals = 11,
+                                 .averaged = 6,
+                                 .lowest = 0.01};
   const StaircaseRule backlash{.start = 2,
                                .large_step = 0.3 / 0.46,
                                .small_step = 0.06 / 0.46,
@@ -76,20 +83,30 @@ std::vector<Measurement> publishedStaircases(int observers) {
                                .reversals = 14,
                                .averaged = 10,
                                .lowest = 0.01};
-  const StaircaseRule delay{
-      .start = 2, .large_step = 15. / 61, .small_step = 6. / 61, .large_reversals = 4, .reversals = 14, .averaged = 10, .lowest = 0.01};
+  const StaircaseRule delay{.start = 2,
+                            .large_step = 15. / 61,
+                            .small_step = 6. / 61,
+                            .large_reversals = 4,
+                            .reversals = 14,
+                            .averaged = 10,
+                            .lowest = 0.01};
   return {staircaseMeasurement("staircase/as-smoothness", smoothness, observers, kNoPromise),
           staircaseMeasurement("staircase/as-backlash", backlash, observers, kNoPromise),
           staircaseMeasurement("staircase/as-delay", delay, observers, kNoPromise)};
 }
 
-// Bias against the step: Garcia-Perez (1998) found that equal steps up and down miss Levitt's point by more, the larger they are beside the
-// spread. The start is the true threshold, so that nothing but the step differs.
+// Bias against the step: Garcia-Perez (1998) found that equal steps up and down miss Levitt's point by more, the larger
+// they are beside the spread. The start is the true threshold, so that nothing but the step differs.
 std::vector<Record> stepSizes(int observers, MeasureContext& context) {
   std::vector<Record> records;
   for (const double step : {0.05, 0.1, 0.2, 0.4, 0.8}) {
-    const StaircaseRule rule{
-        .start = 1, .large_step = step, .small_step = step, .large_reversals = 0, .reversals = 42, .averaged = 40, .lowest = -10};
+    const StaircaseRule rule{.start = 1,
+                             .large_step = step,
+                             .small_step = step,
+                             .large_reversals = 0,
+                             .reversals = 42,
+                             .averaged = 40,
+                             .lowest = -10};
     const Spread s = overObservers(rule, observers, context);
     records.push_back(unbounded(fmt::format("bias at a step of {:g} of the threshold", step), 100 * s.bias, "%"));
   }
@@ -113,7 +130,8 @@ std::vector<Record> constantStimuli(Sigmoid shape, int observers, MeasureContext
   }
   const double share = 100.0 * covered / observers;
   return {atMost("bias of the 75 % point, of it", 100 * std::abs(sum / observers), "%", 2),
-          atLeast("95 % intervals that hold it", share, "%", 92), atMost("95 % intervals that hold it", share, "%", 98)};
+          atLeast("95 % intervals that hold it", share, "%", 92),
+          atMost("95 % intervals that hold it", share, "%", 98)};
 }
 
 // Of all squares up to 12 conditions: how far the counts of places and of neighbours are from equal.
@@ -141,8 +159,10 @@ std::vector<Measurement> studyMeasurements(const StudyBenchOptions& options) {
   std::vector<Measurement> list{staircaseMeasurement("staircase/careful", carefulRule(), n, 2)};
   for (Measurement& m : publishedStaircases(n)) list.push_back(std::move(m));
   list.push_back({"staircase/step-size", [n](MeasureContext& c) { return stepSizes(n, c); }});
-  list.push_back({"constant-stimuli/normal", [n](MeasureContext& c) { return constantStimuli(Sigmoid::kNormal, n, c); }});
-  list.push_back({"constant-stimuli/logistic", [n](MeasureContext& c) { return constantStimuli(Sigmoid::kLogistic, n, c); }});
+  list.push_back(
+      {"constant-stimuli/normal", [n](MeasureContext& c) { return constantStimuli(Sigmoid::kNormal, n, c); }});
+  list.push_back(
+      {"constant-stimuli/logistic", [n](MeasureContext& c) { return constantStimuli(Sigmoid::kLogistic, n, c); }});
   list.push_back({"latin-squares", squares});
   return list;
 }

@@ -14,7 +14,8 @@ constexpr double kSweepStep = kSpeed * kBenchTick;
 
 }  // namespace
 
-FingerPath sweepAround(const contact::SmoothMesh& mesh, const SweepPlane& plane, const Vec3& start, double length, double depth) {
+FingerPath sweepAround(const contact::SmoothMesh& mesh, const SweepPlane& plane, const Vec3& start, double length,
+                       double depth) {
   BenchFinger finger;
   const auto inPlane = [&](const Vec3& p) -> Vec3 { return p + (plane.offset - p.dot(plane.axis)) * plane.axis; };
   contact::SurfaceContact touch = finger.on(mesh, inPlane(2 * mesh.boundingRadius() * start)).main();

@@ -1,13 +1,16 @@
-// convex_gap: how far two convex solids are apart, or how deep they overlap, by trying every direction that may be the best.
+// convex_gap: how far two convex solids are apart, or how deep they overlap, by
+// trying every direction that may be the best.
 //
-//   gap(n) = min over a of n . p - max over b of n . p,   phi = max over unit n of gap(n) [m]          n out of b towards a
+//   gap(n) = min over a of n . p - max over b of n . p,   phi = max over unit n of gap(n)
+//                                                         [m]          n out of b towards a
 //
-// gap has kinks at the normals of flat faces, and along the circle of directions across each straight edge; it is smooth elsewhere. Every
-// maximum is therefore one of four kinds, and each is tried: the faces' normals; the cross products of two edges; a maximum along one edge's
-// circle (sampled, then narrowed by halves); one on the open sphere (sampled, then climbed from the best samples by shrinking steps).
-// The solids are described again, by corners and discs: nothing is shared with contact/shape but the shapes' own numbers.
-// It takes milliseconds, and serves tests and measurements. Error: gap 1e-14 of the size, and the direction 1e-7 rad, where one of the first
-// two kinds wins exact. A maximum that no sample comes near (basins narrower than 0.05 rad, of deep overlap) is missed: it is a lower bound.
+// gap has kinks at the normals of flat faces, and along the circle of directions across each straight edge; it is
+// smooth elsewhere. Every maximum is therefore one of four kinds, and each is tried: the faces' normals; the cross
+// products of two edges; a maximum along one edge's circle (sampled, then narrowed by halves); one on the open sphere
+// (sampled, then climbed from the best samples by shrinking steps). The solids are described again, by corners and
+// discs: nothing is shared with contact/shape but the shapes' own numbers. It takes milliseconds, and serves tests and
+// measurements. Error: gap 1e-14 of the size, and the direction 1e-7 rad, where one of the first two kinds wins exact.
+// A maximum that no sample comes near (basins narrower than 0.05 rad, of deep overlap) is missed: it is a lower bound.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -25,7 +28,8 @@ struct PlainSolid {
   struct Disc {
     Vec3 centre, axis;  // unit axis
     double radius;
-    Vec3 flat = Vec3::Zero();  // unit vector in the disc's plane beyond whose multiple `cut` nothing is; zero: a whole disc
+    // unit vector in the disc's plane beyond whose multiple `cut` nothing is; zero: a whole disc
+    Vec3 flat = Vec3::Zero();
     double cut = 0;
   };
   std::vector<Vec3> corners;
@@ -43,7 +47,8 @@ struct PlainSolid {
     for (const Vec3& p : corners) offer(p);
     for (const Disc& disc : discs) {
       Vec3 across = d - disc.axis.dot(d) * disc.axis;
-      across -= disc.axis.dot(across) * disc.axis;  // twice: of nearly nothing the first leaves round-off along the axis
+      // twice: of nearly nothing the first leaves round-off along the axis
+      across -= disc.axis.dot(across) * disc.axis;
       const double length = across.norm();
       const Vec3 rim = length > 1e-12 ? Vec3(disc.radius / length * across) : Vec3(Vec3::Zero());
       if (disc.flat == Vec3::Zero() || disc.flat.dot(rim) <= disc.cut) offer(disc.centre + rim);
@@ -56,7 +61,8 @@ namespace convex_gap {
 
 inline void add(const contact::Box& s, PlainSolid& out) {
   for (int i = 0; i < 8; ++i)
-    out.corners.emplace_back(i & 1 ? s.half.x() : -s.half.x(), i & 2 ? s.half.y() : -s.half.y(), i & 4 ? s.half.z() : -s.half.z());
+    out.corners.emplace_back(i & 1 ? s.half.x() : -s.half.x(), i & 2 ? s.half.y() : -s.half.y(),
+                             i & 4 ? s.half.z() : -s.half.z());
   for (int i = 0; i < 3; ++i) {
     out.edges.push_back(Vec3::Unit(i));
     for (const double sign : {-1.0, 1.0}) out.normals.push_back(sign * Vec3::Unit(i));
@@ -107,7 +113,9 @@ class Search {
  public:
   Search(const PlainSolid& a, const PlainSolid& b) : a_(a), b_(b), slope_(2 * spread()) {}
 
-  double gapAlong(const Vec3& n) const { return n.dot(a_.furthest(-n)) - n.dot(b_.furthest(n)) - a_.rounding - b_.rounding; }
+  double gapAlong(const Vec3& n) const {
+    return n.dot(a_.furthest(-n)) - n.dot(b_.furthest(n)) - a_.rounding - b_.rounding;
+  }
 
   Best find() {
     for (const Vec3& m : a_.normals) offer(-m);
@@ -141,7 +149,8 @@ class Search {
     for (int i = 0; i < kSamples; ++i) {
       const double here = gaps[static_cast<std::size_t>(i)];
       if (here + slope_ * step < best_.gap) continue;
-      if (here < gaps[static_cast<std::size_t>((i + 1) % kSamples)] || here < gaps[static_cast<std::size_t>((i + kSamples - 1) % kSamples)])
+      if (here < gaps[static_cast<std::size_t>((i + 1) % kSamples)] ||
+          here < gaps[static_cast<std::size_t>((i + kSamples - 1) % kSamples)])
         continue;
       double lo = (i - 1) * step, hi = (i + 1) * step;  // one maximum between the two: thirds until round-off
       for (int k = 0; k < 80 && hi - lo > 1e-12; ++k) {
@@ -164,7 +173,8 @@ class Search {
     std::sort(samples.begin(), samples.end(), [](const Best& x, const Best& y) { return x.gap > y.gap; });
     std::vector<Vec3> starts = {best_.n};
     for (const Best& s : samples) {
-      const bool is_near = std::any_of(starts.begin(), starts.end(), [&](const Vec3& n) { return (n - s.n).norm() < 0.15; });
+      const bool is_near =
+          std::any_of(starts.begin(), starts.end(), [&](const Vec3& n) { return (n - s.n).norm() < 0.15; });
       if (!is_near) starts.push_back(s.n);
       if (starts.size() > kClimbed || s.gap + 0.1 * slope_ < best_.gap) break;
     }
@@ -231,7 +241,8 @@ inline ConvexGap convexGap(const contact::Shape& a, const Pose& X_WA, const cont
 }
 
 // Along the unit vector `n`.
-inline double convexGapAlong(const contact::Shape& a, const Pose& X_WA, const contact::Shape& b, const Pose& X_WB, const Vec3& n) {
+inline double convexGapAlong(const contact::Shape& a, const Pose& X_WA, const contact::Shape& b, const Pose& X_WB,
+                             const Vec3& n) {
   PINCER_ASSERT(isUnit(n));
   const PlainSolid sa = plainSolid(a, X_WA), sb = plainSolid(b, X_WB);
   return convex_gap::Search(sa, sb).gapAlong(n);

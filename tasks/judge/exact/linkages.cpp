@@ -13,7 +13,8 @@ constexpr double kFineStep = 2e-5;  // [s]
 
 using Long = Eigen::Array<long double, Eigen::Dynamic, 1>;
 
-// Beyond double precision by the first two terms about the double next to x: off by 1e-16 at most, as our own functions are.
+// Beyond double precision by the first two terms about the double next to x: off by
+// 1e-16 at most, as our own functions are.
 long double sine(long double x) {
   const auto near = static_cast<double>(x);
   return math::sin(near) + (x - near) * math::cos(near);
@@ -73,14 +74,16 @@ double RodChain::energy(const std::vector<double>& angles, const std::vector<dou
     sum += weightOf(*this, i) * (1 - cosine(static_cast<long double>(angles[a])));
     for (int j = 0; j < rods; ++j) {
       const auto b = static_cast<std::size_t>(j);
-      sum += 0.5L * inertiaOf(*this, i, j) * cosine(static_cast<long double>(angles[a] - angles[b])) * rates[a] * rates[b];
+      sum +=
+          0.5L * inertiaOf(*this, i, j) * cosine(static_cast<long double>(angles[a] - angles[b])) * rates[a] * rates[b];
     }
   }
   return static_cast<double>(sum);
 }
 
 double EllipticPendulum::angle(double start, double time) const {
-  const long double share = static_cast<long double>(mass) / (block + mass), lever = static_cast<long double>(mass) * distance;
+  const long double share = static_cast<long double>(mass) / (block + mass),
+                    lever = static_cast<long double>(mass) * distance;
   using State = Eigen::Array<long double, 2, 1>;
   const State y = integrated(State(start, 0), time, [&](double, const State& at) {
     const long double c = cosine(at[0]), s = sine(at[0]);
@@ -124,7 +127,8 @@ double FourBar::rockerAngle(double angle) const {
 
 double FourBar::miss(double angle, double rocker_angle) const {
   const double k3 = (square(crank) - square(coupler) + square(rocker) + square(ground)) / (2 * crank * rocker);
-  return ground / crank * math::cos(rocker_angle) - ground / rocker * math::cos(angle) + k3 - math::cos(angle - rocker_angle);
+  return ground / crank * math::cos(rocker_angle) - ground / rocker * math::cos(angle) + k3 -
+         math::cos(angle - rocker_angle);
 }
 
 double FourBar::ratio(double angle) const {
@@ -139,7 +143,8 @@ double FourBar::inertia(double angle) const {
   const double ax = -crank * math::sin(angle), ay = crank * math::cos(angle), bx = -r * rocker * math::sin(b),
                by = r * rocker * math::cos(b);
   const double turn = std::sqrt(square(bx - ax) + square(by - ay)) / coupler;
-  return crank_inertia + rocker_inertia * r * r + coupler_inertia * turn * turn + coupler_mass * 0.25 * (square(ax + bx) + square(ay + by));
+  return crank_inertia + rocker_inertia * r * r + coupler_inertia * turn * turn +
+         coupler_mass * 0.25 * (square(ax + bx) + square(ay + by));
 }
 
 double FourBar::angle(double start, double rate, double time) const {
@@ -153,7 +158,8 @@ double SliderCrank::place(double angle) const {
 double SliderCrank::inertia(double angle) const {
   const double ax = -crank * math::sin(angle), ay = crank * math::cos(angle), across = crank * math::sin(angle);
   const double along = std::sqrt(square(rod) - square(across)), slide = ax - across * ay / along, turn = ay / along;
-  return crank_inertia + slider_mass * slide * slide + rod_inertia * turn * turn + rod_mass * 0.25 * (square(ax + slide) + ay * ay);
+  return crank_inertia + slider_mass * slide * slide + rod_inertia * turn * turn +
+         rod_mass * 0.25 * (square(ax + slide) + ay * ay);
 }
 
 double SliderCrank::angle(double start, double rate, double time) const {

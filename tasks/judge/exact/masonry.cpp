@@ -20,7 +20,8 @@ std::vector<HalfPlane> thrustLimits(int voussoirs, double thickness) {
   PINCER_ASSERT(0 < thickness && thickness < 2);  // of the mean radius
   const double inner = 1 - thickness / 2, outer = 1 + thickness / 2, angle = M_PI / voussoirs;
   const double weight = 0.5 * (outer * outer - inner * inner) * math::sin(angle);
-  const double centroid = 2.0 / 3 * math::cos(angle / 2) * (math::cube(outer) - math::cube(inner)) / (outer * outer - inner * inner);
+  const double centroid =
+      2.0 / 3 * math::cos(angle / 2) * (math::cube(outer) - math::cube(inner)) / (outer * outer - inner * inner);
   std::vector<HalfPlane> limits;
   double V = 0, M = 0;
   const auto addJoint = [&](double f) {
@@ -33,9 +34,10 @@ std::vector<HalfPlane> thrustLimits(int voussoirs, double thickness) {
     const bool keystone = !crown_joint && i == 0;  // half of it belongs to this side
     const double begin = crown_joint ? i * angle : (i - 0.5) * angle;
     const double share = keystone ? 0.5 : 1;
-    // Of half the keystone: its own half's moment. The two halves of a trapezoid have their centroids at x = its first moment over half its area.
-    const double x = keystone ? (math::cube(outer) - math::cube(inner)) / 6 * math::sin(angle / 2) * math::sin(angle / 2) *
-                                    math::cos(angle / 2) / (0.5 * weight)
+    // Of half the keystone: its own half's moment. The two halves of a trapezoid have their centroids at
+    // x = its first moment over half its area.
+    const double x = keystone ? (math::cube(outer) - math::cube(inner)) / 6 * math::sin(angle / 2) *
+                                    math::sin(angle / 2) * math::cos(angle / 2) / (0.5 * weight)
                               : centroid * math::sin(begin + angle / 2);
     V += share * weight;
     M += share * weight * x;

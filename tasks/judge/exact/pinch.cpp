@@ -26,7 +26,8 @@ double SlidingPinch::acceleration(double d, double v) const {
   PINCER_ASSERT(std::abs(d) < L);  // else the fingers have met
   const double x = std::sqrt(L * L - d * d);
   const double s = d / L, c = x / L;
-  // [sphere_mass, -2 (s - mu c); finger_mass d/x, c + mu s] [d''; N] = [sphere_mass g; F - finger_mass (v^2/x + d^2 v^2/x^3)]
+  // [sphere_mass, -2 (s - mu c); finger_mass d/x, c + mu s] [d''; N] = [sphere_mass
+  // g; F - finger_mass (v^2/x + d^2 v^2/x^3)]
   const double a12 = -2 * (s - mu * c), a21 = finger_mass * d / x, a22 = c + mu * s;
   const double b1 = sphere_mass * g, b2 = force - finger_mass * v * v * (1 / x + d * d / (x * x * x));
   return (b1 * a22 - a12 * b2) / (sphere_mass * a22 - a12 * a21);
@@ -58,13 +59,15 @@ double leastFrictionOfOffsetPlate(double mass, double offset, double torsion_rad
   return 0.5 * mass * g * math::hypot(1.0, offset / torsion_radius) / force;
 }
 
-PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radius, double friction_force, const Vec2& v0, double w0) {
+PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radius, double friction_force,
+                               const Vec2& v0, double w0) {
   using State = Eigen::Matrix<double, 6, 1>;                                                       // (p, angle, v, w)
   const auto slip = [&](const State& y) { return Vec2(y[3] + y[5] * y[1], y[4] - y[5] * y[0]); };  // v + w x (-p)
   const auto speed = [&](const State& y) { return math::hypot(slip(y).norm(), torsion_radius * y[5]); };
   const auto slope = [&](double, const State& y) {
     const Vec2 f = -friction_force / speed(y) * slip(y);
-    const double moment = -friction_force * torsion_radius * torsion_radius * y[5] / speed(y) - y[0] * f[1] + y[1] * f[0];
+    const double moment =
+        -friction_force * torsion_radius * torsion_radius * y[5] / speed(y) - y[0] * f[1] + y[1] * f[0];
     State dy;
     dy << y[3], y[4], y[5], f / mass, moment / inertia;
     return dy;
@@ -74,7 +77,8 @@ PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radiu
   constexpr double kStep = 2e-6, kAtRest = 1e-7;
   double t = 0;
   for (double s = speed(y); s > kAtRest; s = speed(y)) {
-    const double h = std::min(kStep, 0.1 * s * mass / friction_force);  // finer towards the end, where the direction may still turn
+    // finer towards the end, where the direction may still turn
+    const double h = std::min(kStep, 0.1 * s * mass / friction_force);
     y = rungeKutta(y, t, h, slope);
     t += h;
   }

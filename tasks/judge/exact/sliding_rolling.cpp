@@ -20,7 +20,9 @@ double RollingIncline::acceleration() const {
   return rolls() ? 5.0 / 7 * g * math::sin(theta) : g * (math::sin(theta) - mu * math::cos(theta));
 }
 
-double RollingIncline::surfaceAcceleration() const { return rolls() ? acceleration() : 2.5 * mu * g * math::cos(theta); }
+double RollingIncline::surfaceAcceleration() const {
+  return rolls() ? acceleration() : 2.5 * mu * g * math::cos(theta);
+}
 
 RolledBall rolledBetweenPlates(double radius, const Vec3& way1, const Vec3& way2) {
   return {0.5 * (way1 + way2), Vec3::UnitZ().cross(way2 - way1) / (2 * radius)};

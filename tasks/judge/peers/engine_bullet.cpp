@@ -1,5 +1,6 @@
-// Bullet 3.24, double precision, for hands instead of metres: margin of boxes 0.5 mm, contacts kept up to 1 mm, split impulse, two friction
-// directions, no sleep, no damping; its implicit gyroscopic term. Fingertips and pads are bodies with a linear factor per axis.
+// Bullet 3.24, double precision, for hands instead of metres: margin of boxes 0.5 mm, contacts kept up to 1 mm,
+// split impulse, two friction directions, no sleep, no damping; its implicit gyroscopic term. Fingertips and pads
+// are bodies with a linear factor per axis.
 #include <BulletDynamics/ConstraintSolver/btHingeConstraint.h>
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
@@ -27,7 +28,8 @@ btDefaultCollisionConstructionInfo largePools() {
 }
 
 std::unique_ptr<btCollisionShape> shapeOf(const BenchBody& body) {
-  if (const auto* sphere = std::get_if<contact::Sphere>(&body.shape)) return std::make_unique<btSphereShape>(sphere->radius);
+  if (const auto* sphere = std::get_if<contact::Sphere>(&body.shape))
+    return std::make_unique<btSphereShape>(sphere->radius);
   if (const auto* box = std::get_if<contact::Box>(&body.shape)) {
     auto shape = std::make_unique<btBoxShape>(fromEigen(box->half));
     shape->setMargin(kBoxMargin);
@@ -160,7 +162,8 @@ std::vector<Contestant> bulletEngines() {
     c.engine = "Bullet";
     c.setting = dantzig ? "Dantzig" : "SI50";
     c.lacks = [=](const BenchWorld& world) {
-      return dantzig && world.bodies.size() > 60 ? std::string("not run with more than 60 bodies, for its cost") : std::string();
+      return dantzig && world.bodies.size() > 60 ? std::string("not run with more than 60 bodies, for its cost")
+                                                 : std::string();
     };
     c.make = [=](const BenchWorld& world, const BenchStep& step) -> std::unique_ptr<BenchEngine> {
       return std::make_unique<BulletEngine>(world, step.h, dantzig);

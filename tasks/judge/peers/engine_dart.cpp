@@ -1,5 +1,6 @@
-// DART 6.12 (Debian): the Dantzig boxed LCP solver behind its own collision detector, error reduction 0.2, softening 1e-9, slop 1 um. Planes are
-// boxes of 10 m, whose upper face is the plane; the detector knows no capsules. Fingertips and pads hang on prismatic joints.
+// DART 6.12 (Debian): the Dantzig boxed LCP solver behind its own collision detector, error reduction 0.2, softening
+// 1e-9, slop 1 um. Planes are boxes of 10 m, whose upper face is the plane; the detector knows no capsules.
+// Fingertips and pads hang on prismatic joints.
 #include <algorithm>
 #include <dart/collision/dart/DARTCollisionDetector.hpp>
 #include <dart/constraint/BoxedLcpConstraintSolver.hpp>
@@ -34,14 +35,17 @@ Eigen::Isometry3d isometry(const Pose& X) {
 }
 
 dynamics::ShapePtr shapeForDart(const BenchBody& body) {
-  if (const auto* sphere = std::get_if<contact::Sphere>(&body.shape)) return std::make_shared<dynamics::SphereShape>(sphere->radius);
-  if (const auto* box = std::get_if<contact::Box>(&body.shape)) return std::make_shared<dynamics::BoxShape>(Vec3(2 * box->half));
+  if (const auto* sphere = std::get_if<contact::Sphere>(&body.shape))
+    return std::make_shared<dynamics::SphereShape>(sphere->radius);
+  if (const auto* box = std::get_if<contact::Box>(&body.shape))
+    return std::make_shared<dynamics::BoxShape>(Vec3(2 * box->half));
   return std::make_shared<dynamics::BoxShape>(Vec3(kPlaneSize, kPlaneSize, 1));
 }
 
 class DartEngine : public BenchEngine {
  public:
-  DartEngine(const BenchWorld& world, double h) : description_(world), h_(h), world_(dart::simulation::World::create()) {
+  DartEngine(const BenchWorld& world, double h)
+      : description_(world), h_(h), world_(dart::simulation::World::create()) {
     world_->setGravity(world.gravity_W);
     world_->setTimeStep(h);
     world_->setConstraintSolver(std::make_unique<constraint::BoxedLcpConstraintSolver>(
@@ -153,8 +157,9 @@ std::vector<Contestant> dartEngines() {
   c.engine = "DART";
   c.setting = "Dantzig";
   c.lacks = [](const BenchWorld& world) -> std::string {
-    const bool capsule = std::any_of(world.bodies.begin(), world.bodies.end(),
-                                     [](const BenchBody& b) { return std::holds_alternative<contact::Capsule>(b.shape); });
+    const bool capsule = std::any_of(world.bodies.begin(), world.bodies.end(), [](const BenchBody& b) {
+      return std::holds_alternative<contact::Capsule>(b.shape);
+    });
     if (capsule) return "its collision detector knows no capsules";
     return world.bodies.size() > 60 ? "not run with more than 60 bodies, for its cost" : "";
   };

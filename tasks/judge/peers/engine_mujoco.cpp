@@ -1,6 +1,8 @@
-// MuJoCo 2.2.2 (Debian): elliptic cones, Newton, tolerance 1e-8, contacts as stiff as its time constant allows (solref 5 steps, solimp .99 .999
-// .0001), impratio 1e4 without noslip, or 100 with 30 noslip iterations: the settings that its documentation gives against slip. RK4 with the
-// first for what moves smoothly. And, in the scene of its issue 3328 alone, the recipe given there: soft contacts, impratio 10. Fingertips and pads are bodies on slide joints, whose dampers are its own.
+// MuJoCo 2.2.2 (Debian): elliptic cones, Newton, tolerance 1e-8, contacts as stiff as its time constant allows
+// (solref 5 steps, solimp .99 .999 .0001), impratio 1e4 without noslip, or 100 with 30 noslip iterations: the
+// settings that its documentation gives against slip. RK4 with the first for what moves smoothly. And, in the scene
+// of its issue 3328 alone, the recipe given there: soft contacts, impratio 10. Fingertips and pads are bodies on
+// slide joints, whose dampers are its own.
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
@@ -29,8 +31,8 @@ constexpr MujocoSetting kMujocoSettings[] = {{"impratio 1e4", 1e4, 0, "Euler"},
 std::string text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 std::string text(const Quat& q) { return fmt::format("{} {} {} {}", q.w(), q.x(), q.y(), q.z()); }
 
-// Restitution of x'' = -x - 2 z x' that only pushes: from x' = -1 it lets go where x + 2 z x' = 0, at w t = 2 atan2(w, z), w = sqrt(1 - z^2),
-// with x' = exp(-z t).
+// Restitution of x'' = -x - 2 z x' that only pushes: from x' = -1 it lets go where x + 2 z x' = 0, at w t = 2 atan2(w,
+// z), w = sqrt(1 - z^2), with x' = exp(-z t).
 double restitutionOf(double z) {
   const double w = std::sqrt(1 - z * z);
   return std::exp(-z / w * 2 * std::atan2(w, z));
@@ -45,7 +47,8 @@ double dampingRatioFor(double restitution) {
   return low;
 }
 
-// Contact parameters. A bounce needs a spring that a few steps resolve (frequency 0.2 per step) and hardly any softening.
+// Contact parameters. A bounce needs a spring that a few steps resolve
+// (frequency 0.2 per step) and hardly any softening.
 std::string contactText(const BenchWorld& world, double h, bool soft) {
   const std::string friction = fmt::format("condim='3' friction='{} 0 0' ", std::max(world.mu, 1e-5));
   if (soft) return friction;
@@ -83,8 +86,10 @@ std::string jointText(const BenchBody& body) {
 std::string modelText(const BenchWorld& world, double h, const MujocoSetting& setting) {
   const std::size_t n = world.bodies.size();
   std::string xml = fmt::format(
-      "<mujoco><compiler boundmass='0' angle='radian'/><option timestep='{}' gravity='{}' cone='elliptic' solver='Newton' integrator='{}' "
-      "impratio='{}' noslip_iterations='{}' noslip_tolerance='1e-14' tolerance='1e-8' iterations='100'/><size njmax='{}' "
+      "<mujoco><compiler boundmass='0' angle='radian'/><option timestep='{}' gravity='{}' cone='elliptic' "
+      "solver='Newton' integrator='{}' "
+      "impratio='{}' noslip_iterations='{}' noslip_tolerance='1e-14' tolerance='1e-8' iterations='100'/><size "
+      "njmax='{}' "
       "nconmax='{}'/><worldbody>",
       h, text(world.gravity_W), setting.integrator, setting.impratio, setting.noslip, n > 100 ? 12 * n : 60 * n + 500,
       n > 100 ? 4 * n : 15 * n + 100);
@@ -92,11 +97,12 @@ std::string modelText(const BenchWorld& world, double h, const MujocoSetting& se
   for (std::size_t i = 0; i < n; ++i) {
     const BenchBody& body = world.bodies[i];
     if (body.kind == BenchKind::kFixed) {
-      xml += fmt::format("<geom type='plane' size='2 2 .1' pos='{}' quat='{}' {}/>", text(body.X_WB.p), text(body.X_WB.q), contact);
+      xml += fmt::format("<geom type='plane' size='2 2 .1' pos='{}' quat='{}' {}/>", text(body.X_WB.p),
+                         text(body.X_WB.q), contact);
       continue;
     }
-    xml += fmt::format("<body name='b{}' pos='{}' quat='{}'>{}{}</body>", i, text(body.X_WB.p), text(body.X_WB.q), jointText(body),
-                       geometryText(body, contact));
+    xml += fmt::format("<body name='b{}' pos='{}' quat='{}'>{}{}</body>", i, text(body.X_WB.p), text(body.X_WB.q),
+                       jointText(body), geometryText(body, contact));
   }
   return xml + "</worldbody></mujoco>";
 }
@@ -113,7 +119,8 @@ mjModel* compile(const std::string& xml) {
   return model;
 }
 
-// In place of what MuJoCo does itself: print each and write a log file. The error's ends the process, so it is made an exception.
+// In place of what MuJoCo does itself: print each and write a log file. The error's ends
+// the process, so it is made an exception.
 void keepQuiet(const char*) {}
 void refuse(const char* message) { throw InputError(fmt::format("MuJoCo gives up: {}", message)); }
 
@@ -151,7 +158,7 @@ class MujocoEngine : public BenchEngine {
       const auto k = static_cast<std::size_t>(i);
       const BenchBody& body = world_.bodies[k];
       Vec3 f = guidingForce(undamped_[k], motion(i), t, h_) - body.mass * world_.gravity_W;  // weightless
-      f += body.damping.cwiseProduct(body.aim(t).v_W);                                       // the joint's own damper pulls towards rest
+      f += body.damping.cwiseProduct(body.aim(t).v_W);  // the joint's own damper pulls towards rest
       for (int axis = 0; axis < 3; ++axis) data_->xfrc_applied[6 * ids_[k] + axis] = f[axis];
     }
     mj_step(model_, data_);

@@ -1,5 +1,6 @@
-// ODE 0.16, double precision: the Dantzig stepper (dWorldStep) and QuickStep with 50 iterations; friction pyramid (dContactApprox1), surface
-// layer 1 um, no sleep, no damping, gyroscopic term on. It has no locked axes: fingertips and pads are held by motors of infinite force.
+// ODE 0.16, double precision: the Dantzig stepper (dWorldStep) and QuickStep with 50 iterations; friction pyramid
+// (dContactApprox1), surface layer 1 um, no sleep, no damping, gyroscopic term on. It has no locked axes: fingertips
+// and pads are held by motors of infinite force.
 #include <ode/ode.h>
 
 #include <cstdarg>
@@ -53,7 +54,8 @@ class OdeEngine : public BenchEngine {
 
   BenchMotion motion(int i) override {
     const dBodyID body = bodies_[static_cast<std::size_t>(i)];
-    const dReal *p = dBodyGetPosition(body), *q = dBodyGetQuaternion(body), *v = dBodyGetLinearVel(body), *w = dBodyGetAngularVel(body);
+    const dReal *p = dBodyGetPosition(body), *q = dBodyGetQuaternion(body), *v = dBodyGetLinearVel(body),
+                *w = dBodyGetAngularVel(body);
     return {{Quat(q[0], q[1], q[2], q[3]), Vec3(p[0], p[1], p[2])}, Vec3(v[0], v[1], v[2]), Vec3(w[0], w[1], w[2])};
   }
 
@@ -163,7 +165,8 @@ std::vector<Contestant> odeEngines() {
     c.engine = "ODE";
     c.setting = quick ? "QuickStep" : "Dantzig";
     c.lacks = [=](const BenchWorld& world) {
-      return !quick && world.bodies.size() > 60 ? std::string("not run with more than 60 bodies, for its cost") : std::string();
+      return !quick && world.bodies.size() > 60 ? std::string("not run with more than 60 bodies, for its cost")
+                                                : std::string();
     };
     c.make = [=](const BenchWorld& world, const BenchStep& step) -> std::unique_ptr<BenchEngine> {
       return std::make_unique<OdeEngine>(world, step.h, quick);

@@ -1,5 +1,6 @@
-// Bullet 3.24, double precision: btBvhTriangleMeshShape (quantised tree) against btSphereShape through btCollisionWorld::contactPairTest, the mesh's
-// margin 0, contacts up to 1 mm apart. The deepest of the points it gives counts.
+// Bullet 3.24, double precision: btBvhTriangleMeshShape (quantised tree) against btSphereShape
+// through btCollisionWorld::contactPairTest, the mesh's margin 0, contacts up to 1 mm apart.
+// The deepest of the points it gives counts.
 #include <btBulletCollisionCommon.h>
 
 #include "pincer/tasks/judge/peers/adapters.h"
@@ -11,15 +12,16 @@ struct Deepest : btCollisionWorld::ContactResultCallback {
   PeerContact contact;
   Vec3 centre;
 
-  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int, const btCollisionObjectWrapper*, int,
-                           int) override {
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
     if (contact.touches && point.getDistance() >= contact.phi) return 0;
     const btVector3& n = point.m_normalWorldOnB;
     const btVector3& p = point.getPositionWorldOnB();
     contact.touches = true;
     contact.phi = point.getDistance();
     contact.n_B = Vec3(n.x(), n.y(), n.z());
-    if (contact.n_B.dot(centre - Vec3(p.x(), p.y(), p.z())) < 0) contact.n_B = -contact.n_B;  // out of the mesh, towards the centre
+    // out of the mesh, towards the centre
+    if (contact.n_B.dot(centre - Vec3(p.x(), p.y(), p.z())) < 0) contact.n_B = -contact.n_B;
     return 0;
   }
 };
@@ -29,9 +31,9 @@ class BulletMesh : public MeshPeer {
   BulletMesh(const contact::TriangleMesh& mesh, double finger_radius) : sphere_(finger_radius) {
     for (const Vec3& v : mesh.vertices) vertices_.insert(vertices_.end(), {v.x(), v.y(), v.z()});
     for (const auto& t : mesh.triangles) indices_.insert(indices_.end(), t.begin(), t.end());
-    arrays_ = std::make_unique<btTriangleIndexVertexArray>(static_cast<int>(mesh.triangles.size()), indices_.data(),
-                                                           3 * static_cast<int>(sizeof(int)), static_cast<int>(mesh.vertices.size()),
-                                                           vertices_.data(), 3 * static_cast<int>(sizeof(btScalar)));
+    arrays_ = std::make_unique<btTriangleIndexVertexArray>(
+        static_cast<int>(mesh.triangles.size()), indices_.data(), 3 * static_cast<int>(sizeof(int)),
+        static_cast<int>(mesh.vertices.size()), vertices_.data(), 3 * static_cast<int>(sizeof(btScalar)));
     shape_ = std::make_unique<btBvhTriangleMeshShape>(arrays_.get(), true);
     shape_->setMargin(0);
     object_.setCollisionShape(shape_.get());

@@ -1,5 +1,5 @@
-// ODE 0.16, double precision: dCollide of a trimesh (OPCODE) and a sphere, up to 2048 points, the deepest of which counts: with 64 the deepest
-// isn't always among them on fine meshes. It says nothing while the two don't overlap.
+// ODE 0.16, double precision: dCollide of a trimesh (OPCODE) and a sphere, up to 2048 points, the deepest of which
+// counts: with 64 the deepest isn't always among them on fine meshes. It says nothing while the two don't overlap.
 #include <ode/ode.h>
 
 #include "pincer/tasks/judge/peers/adapters.h"
@@ -17,8 +17,8 @@ class OdeMesh : public MeshPeer {
       for (const std::int32_t v : t) indices_.push_back(static_cast<dTriIndex>(v));
     }
     data_ = dGeomTriMeshDataCreate();
-    dGeomTriMeshDataBuildDouble(data_, vertices_.data(), 3 * sizeof(double), static_cast<int>(mesh.vertices.size()), indices_.data(),
-                                static_cast<int>(indices_.size()), 3 * sizeof(dTriIndex));
+    dGeomTriMeshDataBuildDouble(data_, vertices_.data(), 3 * sizeof(double), static_cast<int>(mesh.vertices.size()),
+                                indices_.data(), static_cast<int>(indices_.size()), 3 * sizeof(dTriIndex));
     mesh_ = dCreateTriMesh(nullptr, data_, nullptr, nullptr, nullptr);
     finger_ = dCreateSphere(nullptr, finger_radius);
   }
@@ -39,7 +39,8 @@ class OdeMesh : public MeshPeer {
     for (int i = 0; i < n; ++i) {
       const dContactGeom& point = points_[static_cast<std::size_t>(i)];
       if (deepest.touches && -point.depth >= deepest.phi) continue;
-      deepest = {true, -Vec3(point.normal[0], point.normal[1], point.normal[2]), -point.depth};  // ODE's normal points into the first geom
+      // ODE's normal points into the first geom
+      deepest = {true, -Vec3(point.normal[0], point.normal[1], point.normal[2]), -point.depth};
     }
     return deepest;
   }

@@ -58,8 +58,9 @@ std::string faultOfCones(const engine::WorldScratch& scratch) {
 // Contacts with torsion or rolling have more rows, which u_C doesn't hold; they are left to the solver's own tests.
 std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScratch& scratch) {
   constexpr double kTolerance = 1e-6;
-  constexpr double kContent = 2e-8;  // [m/s] twice what the solver is content with (few_contacts.cpp), for w is another here
-  constexpr int kFew = 60;           // contacts; of more an error is allowed (docs/engine.md, "enough")
+  // [m/s] twice what the solver is content with (few_contacts.cpp), for w is another here
+  constexpr double kContent = 2e-8;
+  constexpr int kFew = 60;  // contacts; of more an error is allowed (docs/engine.md, "enough")
   constexpr double kOfSlip = 6e-4, kMostAccuracies = 200;  // again twice
   double speed = 1e-6, worst = 0, slip = 0;
   int contacts = 0;
@@ -67,8 +68,8 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
     ++contacts;
     if (c.r[2] > 0) slip = std::max(slip, c.u_C.head<2>().norm());
     engine::ContactVector u_free_C = engine::ContactVector::Zero();
-    engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free, engine::rowsOf(c.material),
-                             u_free_C.data());
+    engine::relativeVelocity(c, engine::mover(scratch, c.a).free, engine::mover(scratch, c.b).free,
+                             engine::rowsOf(c.material), u_free_C.data());
     speed = std::max({speed, c.u_C.norm(), u_free_C.norm()});
   });
   engine::forEachContact(scratch, [&](const engine::Contact& c) {
@@ -78,8 +79,11 @@ std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScrat
     speed = std::max(speed, w * c.r.head<3>().norm());
     worst = std::max(worst, w * (c.r.head<3>() - ontoCone(c.r.head<3>() - u / w, c.mu)).norm());
   });
-  const double allowed = contacts <= kFew ? kContent : std::max(kMostAccuracies * model.options.solver.accuracy, kOfSlip * slip);
-  return worst <= kTolerance * speed + allowed ? std::string() : fmt::format("contact law missed by {:.3g} of {:.3g} m/s", worst, speed);
+  const double allowed =
+      contacts <= kFew ? kContent : std::max(kMostAccuracies * model.options.solver.accuracy, kOfSlip * slip);
+  return worst <= kTolerance * speed + allowed
+             ? std::string()
+             : fmt::format("contact law missed by {:.3g} of {:.3g} m/s", worst, speed);
 }
 
 double totalEnergy(const engine::WorldModel& model, const engine::WorldState& state) {

@@ -1,4 +1,5 @@
-// checks: what must hold after every tick of a stressed world (stress.h), each found afresh from the state and the contacts.
+// checks: what must hold after every tick of a stressed world (stress.h), each
+// found afresh from the state and the contacts.
 #pragma once
 #include <string>
 

@@ -63,7 +63,9 @@ class TreeDraft {
   void addJoint(int body, int parent, const Vec3& p_W) {
     engine::JointModel joint;
     joint.name = fmt::format("joint{}", tree_.joints.size());
-    joint.kind = oneIn(random_, 8) ? engine::JointKind::kBall : oneIn(random_, 4) ? engine::JointKind::kSlider : engine::JointKind::kPivot;
+    joint.kind = oneIn(random_, 8)   ? engine::JointKind::kBall
+                 : oneIn(random_, 4) ? engine::JointKind::kSlider
+                                     : engine::JointKind::kPivot;
     joint.a = body;
     joint.b = parent;
     const Quat q = anyAxis();
@@ -134,7 +136,8 @@ class TreeDraft {
 
 RandomTree drawTree(Random& random, const engine::Material& material) { return TreeDraft(random, material).draw(); }
 
-void drawControls(Random& random, const std::vector<engine::DriveModel>& drives, std::vector<engine::DriveInput>& controls) {
+void drawControls(Random& random, const std::vector<engine::DriveModel>& drives,
+                  std::vector<engine::DriveInput>& controls) {
   controls.resize(drives.size());
   for (std::size_t d = 0; d < drives.size(); ++d) {
     if (!oneIn(random, 50)) continue;

@@ -13,8 +13,9 @@
 namespace pincer::tasks {
 namespace {
 
-// Each draw is a statement of its own: the order in which arguments are evaluated is the compiler's, and a seed must mean the same world to all.
-// It is the order that g++ takes, last arguments first: tests hold on to seeds that once failed so.
+// Each draw is a statement of its own: the order in which arguments are evaluated is the compiler's,
+// and a seed must mean the same world to all. It is the order that g++ takes, last arguments first:
+// tests hold on to seeds that once failed so.
 double logUniform(Random& random, double low, double high) { return low * math::pow(high / low, random.uniform()); }
 
 double friction(Random& random) { return random.below(8) == 0 ? 0 : random.uniform(0, 5); }
@@ -47,7 +48,8 @@ contact::PadTip anyPad(Random& random) {
   const double width = logUniform(random, 5e-3, 40e-3);
   const Vec3 half = 0.5 * width * anyVector(random, 0.2, 1);
   std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z()});
+  for (int i = 0; i < 8; ++i)
+    corners.push_back({i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(), i & 4 ? half.z() : -half.z()});
   return {contact::Polytope::hullOf(corners, "pad"), 5e-4};
 }
 
@@ -143,8 +145,8 @@ class Draft {
       const double mass = logUniform(random_, 1e-3, 1);
       const double height = random_.uniform(0.5, 1);
       const double depth = random_.uniform(0.5, 1);
-      engine::BodyStart& start =
-          add(contact::Box{size / 2 * Vec3(1, depth, height)}, mass, {Quat::Identity(), size * Vec3(0.9, 0.9, 0.7 + 1.3 * i)});
+      engine::BodyStart& start = add(contact::Box{size / 2 * Vec3(1, depth, height)}, mass,
+                                     {Quat::Identity(), size * Vec3(0.9, 0.9, 0.7 + 1.3 * i)});
       start.v_W = Vec3(-1, -1, -1) * random_.uniform(0, 1);
     }
   }
@@ -198,7 +200,8 @@ class Draft {
   void drawCompounds() {
     constexpr double kSize = 0.06;
     drawFalling(3 + static_cast<int>(random_.below(4)), 10, kSize);
-    for (std::size_t i = 1; i < bodies.size(); ++i) bodies[i].shapes = anyParts(0.75 * kSize);  // so that no two overlap at the start
+    // so that no two overlap at the start
+    for (std::size_t i = 1; i < bodies.size(); ++i) bodies[i].shapes = anyParts(0.75 * kSize);
   }
 
   void drawSlivers() {
@@ -223,7 +226,8 @@ class Draft {
     material.torsion_radius = 0;
     bodies.front().material = material;
     const int columns = 1 + static_cast<int>(random_.below(5)), rows = 1 + static_cast<int>(random_.below(8));
-    const double height = logUniform(random_, 5e-3, 0.1), jitter = random_.below(3) == 0 ? 0 : logUniform(random_, 1e-7, 1e-4);
+    const double height = logUniform(random_, 5e-3, 0.1),
+                 jitter = random_.below(3) == 0 ? 0 : logUniform(random_, 1e-7, 1e-4);
     heading_ = quatFromRotationVector(random_.uniform(0, M_PI) * Vec3::UnitZ());
     for (int row = 0; row < rows; ++row) {
       double x = height * random_.uniform(0, 0.5);
@@ -251,7 +255,8 @@ class Draft {
   }
 
   void drawHit() {
-    const double radius = wall_.brick * random_.uniform(0.5, 1.5), mass = 4e3 * radius * radius * radius * logUniform(random_, 1, 100);
+    const double radius = wall_.brick * random_.uniform(0.5, 1.5),
+                 mass = 4e3 * radius * radius * radius * logUniform(random_, 1, 100);
     const double x = wall_.length * random_.uniform(0, 1), z = std::max(radius, wall_.height * random_.uniform(0, 1));
     const Vec3 from(x, -radius - wall_.brick, z), way(0, logUniform(random_, 0.1, 10), 0);
     add(contact::Sphere{radius}, mass, {heading_, heading_ * from}).v_W = heading_ * way;
@@ -269,7 +274,8 @@ class Draft {
       const Vec3 half = size * anyVector(random_, 0.6, 1);
       for (int k = 0; k < kCorners; ++k) corners.push_back(random_.normal3().normalized().cwiseProduct(half));
       const Quat q = anyRotation(random_);
-      const double x = size * (i % 2 == 0 ? 1.1 : -1.1), y = size * (i / 2 % 2 == 0 ? 1.1 : -1.1), z = size * (1.1 + 2.2 * (i / 4));
+      const double x = size * (i % 2 == 0 ? 1.1 : -1.1), y = size * (i / 2 % 2 == 0 ? 1.1 : -1.1),
+                   z = size * (1.1 + 2.2 * (i / 4));
       add(contact::Convex{contact::Polytope::hullOf(corners, "hull")}, 4e3 * half.prod(), {q, Vec3(x, y, z)});
     }
   }
@@ -289,7 +295,8 @@ class Draft {
       grasp::FingerModel finger;
       finger.name = fmt::format("finger{}", i);
       finger.coupling.mass = random_.below(2) == 0 ? 0 : logUniform(random_, 1e-3, 0.1);
-      finger.coupling.stiffness = Vec3::Constant(kind_ == StressClass::kStiffness ? logUniform(random_, 10, 1e6) : 1000);
+      finger.coupling.stiffness =
+          Vec3::Constant(kind_ == StressClass::kStiffness ? logUniform(random_, 10, 1e6) : 1000);
       finger.coupling.damping = Vec3::Constant(random_.uniform(0, 10));
       if (kind_ == StressClass::kPads || (kind_ == StressClass::kCoarse && random_.below(2) == 0)) {
         finger.coupling.stiffness = Vec3::Constant(logUniform(random_, 10, 1e4));

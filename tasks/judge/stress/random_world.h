@@ -1,7 +1,7 @@
 // random_world: worlds of a class of difficulty, drawn from a seed.
 //
-// Ranges, all drawn evenly in the logarithm: masses 0.1 g to 100 kg, sizes 1 mm to 1 m (objects that fingers hold: 10 to 100 mm), ticks 0.1 to
-// 10 ms, stiffness 10 to 1e6 N/m; friction 0 to 5, one in eight exactly 0.
+// Ranges, all drawn evenly in the logarithm: masses 0.1 g to 100 kg, sizes 1 mm to 1 m (objects that fingers hold: 10
+// to 100 mm), ticks 0.1 to 10 ms, stiffness 10 to 1e6 N/m; friction 0 to 5, one in eight exactly 0.
 #pragma once
 #include <span>
 #include <string_view>
@@ -24,9 +24,9 @@ enum class StressClass {
   kTeleport,   // fingers jump by up to 50 mm now and then
   kNoise,      // fingers tremble by up to 1 mm from tick to tick
   kPads,       // two to four flat pads of 5 to 40 mm close on an object, 10 to 1e4 N/m
-  kWalls,      // bricks of mixed lengths laid 0 to 0.1 mm off, in any heading, friction 0.3 to 0.9, masses up to 1e3 : 1
-  kHulls,      // five to twelve hulls fall into a crate
-  kHit,        // such a wall, of like masses, hit by a ball at up to 10 m/s
+  kWalls,  // bricks of mixed lengths laid 0 to 0.1 mm off, in any heading, friction 0.3 to 0.9, masses up to 1e3 : 1
+  kHulls,  // five to twelve hulls fall into a crate
+  kHit,    // such a wall, of like masses, hit by a ball at up to 10 m/s
   kCompounds,  // three to six bodies of two to five shapes each fall on a heap
   kJoints,     // trees of joints with limits, drives, springs and dry friction, masses up to 1e4 : 1 (random_tree.h)
   kCoarse,     // as pads, half of them spheres, that tremble by up to 1 mm; ticks from 0.1 to 10 ms
@@ -46,8 +46,9 @@ struct StressWorld {
 
   const std::vector<Vec3>& startDevices() const { return devices_; }  // one per finger [m]
   bool hasFingers() const { return !model.fingers.empty(); }
-  // The most that the fingers' couplings may have given to bodies so far [J]: k R^2 + d v R of each, R how far its device has been from where it
-  // began, or a pad deep in the object, and v its fastest. A spring that is stretched by R holds half of that; a damper takes the device along by R.
+  // The most that the fingers' couplings may have given to bodies so far [J]: k R^2 + d v R of each, R how far its
+  // device has been from where it began, or a pad deep in the object, and v its fastest. A spring that is stretched by
+  // R holds half of that; a damper takes the device along by R.
   double mostWork() const;
 
   grasp::GraspModel model;

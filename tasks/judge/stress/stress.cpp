@@ -17,24 +17,28 @@ struct WorldResult {
   std::uint64_t hash = 0;  // of the state at the end
 };
 
-std::string faultOfTick(const StressWorld& world, const grasp::GraspState& state, const grasp::GraspScratch& scratch, bool flagged,
-                        double energy) {
+std::string faultOfTick(const StressWorld& world, const grasp::GraspState& state, const grasp::GraspScratch& scratch,
+                        bool flagged, double energy) {
   const engine::WorldModel& model = world.model.world;
   if (std::string fault = faultOfState(model, state.world); !fault.empty()) return fault;
   if (std::string fault = faultOfCones(grasp::worldOf(scratch)); !fault.empty()) return fault;
   if (!flagged) {
     if (std::string fault = faultOfLaw(model, grasp::worldOf(scratch)); !fault.empty()) return fault;
   }
-  constexpr double kRoundOff = 1e-5;  // of the energy: of a body that turns by 0.5 rad in a tick it swings by 2e-6 of itself
+  // of the energy: of a body that turns by 0.5 rad in a tick it swings by 2e-6 of itself
+  constexpr double kRoundOff = 1e-5;
   const double now = totalEnergy(model, state.world), most = energy + world.allowed_lift + world.mostWork();
-  return now <= most + kRoundOff * (std::abs(most) + 1e-6) ? std::string() : fmt::format("energy {:.6g} J, began with {:.6g} J", now, most);
+  return now <= most + kRoundOff * (std::abs(most) + 1e-6)
+             ? std::string()
+             : fmt::format("energy {:.6g} J, began with {:.6g} J", now, most);
 }
 
 constexpr double kCap = 5e-4;  // of one world in kCappedEvery, again: half a tick of 1 kHz [s]
 constexpr int kCappedEvery = 5;
 
 // `tick_times` gets this thread's [us].
-WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double budget, std::vector<double>& tick_times) {
+WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double budget,
+                     std::vector<double>& tick_times) {
   StressWorld world(kind, seed, threads);
   world.model.world.options.solver.budget = budget;
   grasp::GraspState state = grasp::makeState(world.model, world.starts, world.startDevices());
@@ -57,7 +61,8 @@ WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double b
   return result;
 }
 
-// With the cap. Ticks that took longer are timed again: all runs compute the same bits, and what interrupts one doesn't come again.
+// With the cap. Ticks that took longer are timed again: all runs compute the same bits,
+// and what interrupts one doesn't come again.
 WorldResult runCapped(StressClass kind, std::uint64_t seed, std::vector<double>& tick_times) {
   constexpr int kMostRuns = 3;
   std::vector<double> least;
@@ -97,16 +102,20 @@ std::vector<Record> stressClass(StressClass kind, const StressOptions& options, 
   }
   double failed = 0;
   for (const Record& record : failures) failed += record.value;
-  std::vector<Record> records = {exactly(fmt::format("unflagged failures in {} worlds", options.seeds), failed, "-", 0),
-                                 exactly(fmt::format("other bits on two threads, of every {}th world", kThreadsEvery), differing, "-", 0),
-                                 unbounded("flagged ticks", ticks > 0 ? 100.0 * flagged / ticks : 0, "%")};
-  for (const auto& [name, q] : {std::pair("median", 0.5), std::pair("p99", 0.99), std::pair("p99.9", 0.999), std::pair("longest", 1.0)})
+  std::vector<Record> records = {
+      exactly(fmt::format("unflagged failures in {} worlds", options.seeds), failed, "-", 0),
+      exactly(fmt::format("other bits on two threads, of every {}th world", kThreadsEvery), differing, "-", 0),
+      unbounded("flagged ticks", ticks > 0 ? 100.0 * flagged / ticks : 0, "%")};
+  for (const auto& [name, q] :
+       {std::pair("median", 0.5), std::pair("p99", 0.99), std::pair("p99.9", 0.999), std::pair("longest", 1.0)})
     records.push_back(unbounded(fmt::format("tick, {}", name), quantileOf(tick_times, q), "us"));
-  constexpr double kCappedFailures = 0.03;  // of the worlds, and one: what a needle that spins fast costs doesn't fit every budget
-  records.push_back(atMost(fmt::format("failures in {} worlds capped at {:.0f} us", capped, 1e6 * kCap), capped_failed, "-",
-                           std::max(1.0, kCappedFailures * capped)));
+  // of the worlds, and one: what a needle that spins fast costs doesn't fit every budget
+  constexpr double kCappedFailures = 0.03;
+  records.push_back(atMost(fmt::format("failures in {} worlds capped at {:.0f} us", capped, 1e6 * kCap), capped_failed,
+                           "-", std::max(1.0, kCappedFailures * capped)));
   for (const auto& [name, q] : {std::pair("p99.9", 0.999), std::pair("longest", 1.0)})
-    records.push_back(unbounded(fmt::format("tick, {}, capped at {:.0f} us", name, 1e6 * kCap), quantileOf(capped_times, q), "us"));
+    records.push_back(
+        unbounded(fmt::format("tick, {}, capped at {:.0f} us", name, 1e6 * kCap), quantileOf(capped_times, q), "us"));
   records.insert(records.end(), failures.begin(), failures.end());
   return records;
 }
@@ -116,8 +125,9 @@ std::vector<Record> stressClass(StressClass kind, const StressOptions& options, 
 std::vector<Measurement> stressMeasurements(const StressOptions& options) {
   std::vector<Measurement> all;
   for (std::size_t i = 0; i < std::size(kStressClassNames); ++i) {
-    all.push_back({fmt::format("stress/{}", kStressClassNames[i]),
-                   [=](MeasureContext& context) { return stressClass(static_cast<StressClass>(i), options, context); }});
+    all.push_back({fmt::format("stress/{}", kStressClassNames[i]), [=](MeasureContext& context) {
+                     return stressClass(static_cast<StressClass>(i), options, context);
+                   }});
   }
   return all;
 }

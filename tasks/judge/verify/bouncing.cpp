@@ -11,7 +11,8 @@
 namespace pincer::tasks {
 namespace {
 
-// Heights of the first five bounces, from place and velocity on the way (z + v^2/(2 g) is the peak's), and when all bounces are over.
+// Heights of the first five bounces, from place and velocity on the way (z + v^2/(2 g) is
+// the peak's), and when all bounces are over.
 std::vector<Record> fading(MeasureContext& context) {
   Simulation sim(readBuiltinScene("s7_bounce"));
   constexpr double kRadius = 0.02;
@@ -27,7 +28,8 @@ std::vector<Record> fading(MeasureContext& context) {
     if (std::abs(v) > 1e-9) moved_until = sim.time();
     v_before = v;
   });
-  return {atMost("five peaks against e^(2n) h, relative error", worst, "-", 1e-9), atLeast("bounces seen", bounces, "-", 5),
+  return {atMost("five peaks against e^(2n) h, relative error", worst, "-", 1e-9),
+          atLeast("bounces seen", bounces, "-", 5),
           // Bounces of which all that follow last less than a tick aren't followed (decision 11).
           atMost("time until all bounces are over, error", 1e3 * std::abs(moved_until - exact.restTime()), "ms", 2),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
@@ -36,7 +38,8 @@ std::vector<Record> fading(MeasureContext& context) {
 std::vector<Record> lossless(MeasureContext& context) {
   Simulation sim(readBuiltinScene("s7_superball"));
   const auto energy = [&] {
-    return engine::kineticEnergy(sim.model().world, sim.state().world) + engine::potentialEnergy(sim.model().world, sim.state().world);
+    return engine::kineticEnergy(sim.model().world, sim.state().world) +
+           engine::potentialEnergy(sim.model().world, sim.state().world);
   };
   const double start = energy();
   double drift = 0;
@@ -44,7 +47,8 @@ std::vector<Record> lossless(MeasureContext& context) {
   return {atMost("e = 1: energy over 60 s, relative change", drift, "-", 1e-12)};
 }
 
-// With spin: hits that slip all through take 2 mu |v_z| of it each, until one grips. Place, velocity and spin at every tick.
+// With spin: hits that slip all through take 2 mu |v_z| of it each, until one
+// grips. Place, velocity and spin at every tick.
 std::vector<Record> spinning(MeasureContext& context) {
   Simulation sim(readBuiltinScene("spinning_superball"));
   const exact::SpinningBall ball{0.02, 1, 0.1, kVerifyG};
@@ -52,13 +56,15 @@ std::vector<Record> spinning(MeasureContext& context) {
   double place = 0, velocity = 0, spin = 0;
   const RunCount run = runThrough(sim, context, [&] {
     const auto exact = ball.after({start.X_WB.p, start.v_W, start.w_W}, sim.time());
-    const Vec3 v = sim.state().world.bodies[1].v_W, w = engine::bodyAngularVelocity(sim.model().world, sim.state().world, 1);
+    const Vec3 v = sim.state().world.bodies[1].v_W,
+               w = engine::bodyAngularVelocity(sim.model().world, sim.state().world, 1);
     place = std::max(place, (sim.bodyPose(1).p - exact.p).norm());
     velocity = std::max(velocity, Vec2((v - exact.v).head<2>()).norm());
     spin = std::max(spin, (w - exact.w).norm());
   });
   return {atMost("place over 3 s, largest error", 1e6 * place, "um", 1e-3),
-          atMost("velocity along the floor, largest error", velocity, "m/s", 1e-9), atMost("spin, largest error", spin, "rad/s", 1e-7),
+          atMost("velocity along the floor, largest error", velocity, "m/s", 1e-9),
+          atMost("spin, largest error", spin, "rad/s", 1e-7),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
 
@@ -69,7 +75,8 @@ struct PlateCase {
 
 // Largest distance of ball and plate from where they should be at the end of a tick, after the hit or without one [m].
 double plateError(Scene scene, const PlateCase& c, double start) {
-  constexpr double kMass = 0.01, kContact = 0.0055, kSpeed = 10;  // of the ball; height of its centre when it touches [m]
+  // of the ball; height of its centre when it touches [m]
+  constexpr double kMass = 0.01, kContact = 0.0055, kSpeed = 10;
   scene.options.h = c.h;
   scene.starts[1].X_WB.p.z() = start;
   for (engine::BodySpec& body : scene.bodies) body.material.restitution = c.restitution;
@@ -88,7 +95,8 @@ double plateError(Scene scene, const PlateCase& c, double start) {
   return worst;
 }
 
-// Tunnelling: a ball of 5 mm at 10 m/s against a plate of 1 mm, in many phases of ticks from 0.1 to 10 ms, in which it goes up to 100 mm.
+// Tunnelling: a ball of 5 mm at 10 m/s against a plate of 1 mm, in many phases of ticks from 0.1
+// to 10 ms, in which it goes up to 100 mm.
 std::vector<Record> tunnelling(MeasureContext& context) {
   const Scene scene = readBuiltinScene("ball_at_plate");
   constexpr int kPhases = 20;
@@ -97,10 +105,12 @@ std::vector<Record> tunnelling(MeasureContext& context) {
     double worst = 0;
     for (const double plate_mass : {std::numeric_limits<double>::infinity(), 0.027}) {
       for (const double e : {0.0, 0.5, 1.0}) {
-        for (int k = 0; k < kPhases; ++k) worst = std::max(worst, plateError(scene, {h, plate_mass, e}, 0.2 + 10 * h * k / kPhases));
+        for (int k = 0; k < kPhases; ++k)
+          worst = std::max(worst, plateError(scene, {h, plate_mass, e}, 0.2 + 10 * h * k / kPhases));
       }
     }
-    records.push_back(atMost(fmt::format("ball and plate, ticks of {} ms, largest error", 1e3 * h), 1e6 * worst, "um", 1e-3));
+    records.push_back(
+        atMost(fmt::format("ball and plate, ticks of {} ms, largest error", 1e3 * h), 1e6 * worst, "um", 1e-3));
     context.progress(static_cast<double>(records.size()) / 3);
   }
   return records;
@@ -109,7 +119,10 @@ std::vector<Record> tunnelling(MeasureContext& context) {
 }  // namespace
 
 std::vector<Measurement> verifyBouncing() {
-  return {{"bounce/fading", fading}, {"bounce/lossless", lossless}, {"bounce/spinning", spinning}, {"bounce/tunnelling", tunnelling}};
+  return {{"bounce/fading", fading},
+          {"bounce/lossless", lossless},
+          {"bounce/spinning", spinning},
+          {"bounce/tunnelling", tunnelling}};
 }
 
 }  // namespace pincer::tasks

@@ -1,8 +1,10 @@
 // Bodies of several shapes. The answers are those of the same body made of one shape, and closed forms:
 //
 //   halves     a box of two halves moves as the box
-//   dumbbell   two balls, mass m/2 and radius r each, 2 d apart: I = 2/5 m r^2 along their line, I + m d^2 across it; precesses regularly
-//   inertia    an L of three cubes of edge a, mass m each: I_xx = I_yy = 7/6, I_zz = 11/6, I_xy = 1/3 m a^2 about its centre of mass
+//   dumbbell   two balls, mass m/2 and radius r each, 2 d apart: I = 2/5 m r^2 along their line,
+//              I + m d^2 across it; precesses regularly
+//   inertia    an L of three cubes of edge a, mass m each: I_xx = I_yy = 7/6, I_zz = 11/6,
+//              I_xy = 1/3 m a^2 about its centre of mass
 //   jaws       of five boxes each, pressed by 20 N, hold a cube of 64 g as two flat faces would
 #include <array>
 
@@ -14,7 +16,9 @@
 namespace pincer::tasks {
 namespace {
 
-engine::ColliderSpec partAt(const contact::Shape& shape, const Vec3& p_BS) { return {"part", shape, Pose{Quat::Identity(), p_BS}}; }
+engine::ColliderSpec partAt(const contact::Shape& shape, const Vec3& p_BS) {
+  return {"part", shape, Pose{Quat::Identity(), p_BS}};
+}
 
 engine::BodySpec bodyOfParts(std::vector<engine::ColliderSpec> parts, double mass) {
   engine::BodySpec body{"body", contact::Sphere{1}, true, mass, {}};
@@ -54,7 +58,8 @@ double apart(const engine::BodyStart& start, int ticks) {
   double furthest = 0;
   for (int i = 0; i < ticks; ++i) {
     if (!one.tick() || !two.tick()) return std::nan("");
-    furthest = std::max(furthest, (one.place().p - two.place().p).norm() + kReach * angleBetween(one.place().q, two.place().q));
+    furthest = std::max(furthest,
+                        (one.place().p - two.place().p).norm() + kReach * angleBetween(one.place().q, two.place().q));
   }
   return furthest;
 }
@@ -67,7 +72,8 @@ std::vector<Record> twoHalves(MeasureContext&) {
   slide.v_W = Vec3(0.3, 0.1, 0);
   spin.v_W = Vec3(0.2, 0, 0);
   spin.w_W = Vec3(0, 0, 10);
-  return {atMost("in flight, 1 s", 1e6 * apart(flight, 1000), "um", 1e-6), atMost("sliding to rest", 1e6 * apart(slide, 400), "um", 1e-3),
+  return {atMost("in flight, 1 s", 1e6 * apart(flight, 1000), "um", 1e-6),
+          atMost("sliding to rest", 1e6 * apart(slide, 400), "um", 1e-3),
           atMost("sliding and turning to rest", 1e6 * apart(spin, 400), "um", 1e-3)};
 }
 
@@ -93,12 +99,14 @@ std::vector<Record> dumbbellSpins(MeasureContext& context) {
   return {atMost("angle over 10 s, largest error", worst, "rad", 1e-10)};
 }
 
-// Cubes at (0, 0), (a, 0), (0, a): the centre of mass at (a, a)/3; 3 x m a^2/6 of their own, and of the arms I_xx = I_yy = 2/3 m a^2, I_xy = 1/3 m a^2.
+// Cubes at (0, 0), (a, 0), (0, a): the centre of mass at (a, a)/3; 3 x m a^2/6 of their own, and of the arms
+// I_xx = I_yy = 2/3 m a^2, I_xy = 1/3 m a^2.
 std::vector<Record> inertiaOfAnL(MeasureContext&) {
   constexpr double kEdge = 0.02, kMass = 0.03;
   const contact::Box cube{Vec3::Constant(kEdge / 2)};
   engine::WorldBuilder builder{engine::WorldOptions{}};
-  builder.addBody(bodyOfParts({partAt(cube, Vec3::Zero()), partAt(cube, {kEdge, 0, 0}), partAt(cube, {0, kEdge, 0})}, 3 * kMass));
+  builder.addBody(
+      bodyOfParts({partAt(cube, Vec3::Zero()), partAt(cube, {kEdge, 0, 0}), partAt(cube, {0, kEdge, 0})}, 3 * kMass));
   const engine::BodyModel body = builder.build().bodies[0];
   const double unit = kMass * kEdge * kEdge;
   Mat3 exact = Vec3(3.0 / 6 + 2.0 / 3, 3.0 / 6 + 2.0 / 3, 3.0 / 6 + 4.0 / 3).asDiagonal();
@@ -122,8 +130,8 @@ std::vector<Record> fiveBoxJaws(MeasureContext& context) {
     if (sim.ticks() > 700) turn = std::max(turn, angleBetween(in_jaw.q, held.q));
     if (sim.ticks() > 5000) creep = std::max(creep, (in_jaw.p - carried.p).norm());
   });
-  return {atMost("moved in the jaw while it was lifted", 1e6 * slip, "um", 0.1), atMost("turned in the jaw", turn, "rad", 1e-6),
-          atMost("creep in the jaw in 55 s", 1e6 * creep, "um", 1e-6),
+  return {atMost("moved in the jaw while it was lifted", 1e6 * slip, "um", 0.1),
+          atMost("turned in the jaw", turn, "rad", 1e-6), atMost("creep in the jaw in 55 s", 1e6 * creep, "um", 1e-6),
           exactly("flagged ticks", static_cast<double>(count.flagged), "-", 0)};
 }
 

@@ -23,7 +23,8 @@ std::vector<Record> tumblingBox(MeasureContext& context) {
     energy_drift = std::max(energy_drift, std::abs(engine::kineticEnergy(world, sim.state().world) / energy - 1));
     momentum_drift = std::max(momentum_drift, (sim.state().world.bodies[0].L_W - momentum).norm() / momentum.norm());
     if (sim.ticks() == 1000)
-      angle = angleBetween(exact::freeRotation(boxMoments(0.1, {0.01, 0.02, 0.04}), {0.02, 20, 0.02}, 1), sim.bodyPose(0).q);
+      angle = angleBetween(exact::freeRotation(boxMoments(0.1, {0.01, 0.02, 0.04}), {0.02, 20, 0.02}, 1),
+                           sim.bodyPose(0).q);
   });
   return {atMost("angle at 1 s, error", angle, "rad", 1e-6), atMost("energy drift in 60 s", energy_drift, "-", 1e-7),
           atMost("angular momentum drift in 60 s", momentum_drift, "-", 1e-14)};
@@ -39,7 +40,8 @@ std::vector<Record> symmetricTop(MeasureContext& context) {
   Simulation sim(std::move(scene));
   double worst = 0;
   runThrough(sim, context, [&] {
-    worst = std::max(worst, angleBetween(exact::symmetricTop(moments.x(), moments.z(), w, sim.time()), sim.bodyPose(0).q));
+    worst =
+        std::max(worst, angleBetween(exact::symmetricTop(moments.x(), moments.z(), w, sim.time()), sim.bodyPose(0).q));
   });
   return {atMost("angle over 10 s (145 turns), largest error", worst, "rad", 1e-10)};
 }
@@ -50,7 +52,8 @@ exact::HeavyTop heavyTopOfScene() {
   return {kMass, kLever, across + kMass * kLever * kLever, kMass * kRadius * kRadius / 2, 200, kVerifyG};
 }
 
-// How far the axis is from where it should be after every 0.1 s, at most [rad]; its heading rate at the start is `heading_rate`.
+// How far the axis is from where it should be after every 0.1 s, at most [rad]; its
+// heading rate at the start is `heading_rate`.
 double axisError(Scene scene, double heading_rate, MeasureContext& context) {
   const exact::HeavyTop top = heavyTopOfScene();
   constexpr double kAngle = std::numbers::pi / 6;

@@ -1,10 +1,12 @@
 // Grippers made of joints: what they hold stays, slips when it must, and pushes back with what it weighs.
 //
-//   carry      the scene jaws_gripper with a box, a cylinder, a mug held by its handle, a part that is a mesh: each tick the contact forces on it are
-//              m (a - g); no creep between the jaws afterwards, in ten minutes with --thorough; the same asleep as awake
+//   carry      the scene jaws_gripper with a box, a cylinder, a mug held by its handle, a part that is a mesh: each
+//              tick the contact forces on it are m (a - g); no creep between the jaws afterwards, in ten minutes
+//              with --thorough; the same asleep as awake
 //   threshold  a cube between two geared jaws, F at the gear: it holds while mu >= m g/F, with ticks of 0.1 to 4 ms
 //   objects    other shapes in the same jaws
-//   worm       the scene worm_clamp at rest, its motor on or off: the jaw's force is (motor + dry friction) over the lead
+//   worm       the scene worm_clamp at rest, its motor on or off: the jaw's
+//              force is (motor + dry friction) over the lead
 #include <fmt/format.h>
 
 #include "pincer/contact/generated_meshes.h"
@@ -39,13 +41,15 @@ Scene gripperWith(const engine::BodySpec& object, const engine::BodyStart& start
   return scene;
 }
 
-// A mug stands on its side of the jaws, its handle between them; their drive pulls four times as hard, for the mug's weight has a lever.
+// A mug stands on its side of the jaws, its handle between them; their drive pulls four times
+// as hard, for the mug's weight has a lever.
 Scene gripperWithMug() {
   constexpr double kHandle = 0.067, kHigher = 0.03, kStronger = 4, kThinner = 0.014;
   const Scene mug = readBuiltinScene("mug");
   const Quat turned = quatFromRotationVector({0, 0, std::numbers::pi / 2});
   Scene scene = gripperWith(mug.bodies[1], {Pose{turned, turned * Vec3(-kHandle, 0, 0)}});
-  std::vector<TimedPoint> frames{{0.8, {0, 0, 0.075 + kHigher}, Vec3::Zero()}, {1.8, {0, 0, 0.175 + kHigher}, Vec3::Zero()}};
+  std::vector<TimedPoint> frames{{0.8, {0, 0, 0.075 + kHigher}, Vec3::Zero()},
+                                 {1.8, {0, 0, 0.175 + kHigher}, Vec3::Zero()}};
   frames.push_back({2.8, {0.1, 0, 0.175 + kHigher}, Vec3::Zero()});
   scene.motions[0].place = Trajectory::throughKeyframes(frames);
   for (const std::size_t part : {kPalm, kLeft, kRight}) scene.starts[part].X_WB.p.z() += kHigher;
@@ -55,7 +59,8 @@ Scene gripperWithMug() {
   drive.damping *= 2;
   drive.lower_force *= kStronger;
   drive.upper_force *= kStronger;
-  scene.drives[0].control = Trajectory::throughKeyframes({{0.1, Vec3::Zero(), Vec3::Zero()}, {0.6, {0.03 + kThinner, 0, 0}, Vec3::Zero()}});
+  scene.drives[0].control =
+      Trajectory::throughKeyframes({{0.1, Vec3::Zero(), Vec3::Zero()}, {0.6, {0.03 + kThinner, 0, 0}, Vec3::Zero()}});
   return scene;
 }
 
@@ -107,18 +112,22 @@ std::vector<Record> carryIt(const Scene& scene, const CarryBounds& most, Measure
   return {atMost("sum of contact forces less m (a - g), largest", asleep.imbalance, "N", 1e-9),
           atMost("moved between the jaws while it was carried and turned", 1e6 * asleep.slip, "um", most.slip),
           atMost("creep between the jaws after that", 1e6 * asleep.creep, "um", most.creep),
-          exactly("other bits awake than asleep", carried(awake, 20, context).hash != carried(scene, 20, context).hash, "-", 0),
+          exactly("other bits awake than asleep", carried(awake, 20, context).hash != carried(scene, 20, context).hash,
+                  "-", 0),
           exactly("flagged ticks", static_cast<double>(asleep.flagged), "-", 0)};
 }
 
-std::vector<Record> carry(MeasureContext& context) { return carryIt(readBuiltinScene("jaws_gripper"), {0.1, 1e-6}, context); }
+std::vector<Record> carry(MeasureContext& context) {
+  return carryIt(readBuiltinScene("jaws_gripper"), {0.1, 1e-6}, context);
+}
 // Round between flat jaws, it turns after them by half a tick, h w/2 = 1.2 mrad, while they turn.
 std::vector<Record> carryCylinder(MeasureContext& context) {
   engine::BodySpec object = readBuiltinScene("jaws_gripper").bodies[kBox];
   object.shape = contact::Cylinder{0.02, 0.02};
   return carryIt(gripperWith(object, {Pose{Quat::Identity(), {0, 0, 0.02}}}), {2, 1e-6}, context);
 }
-// It slips by 0.8 mm while the palm turns, and not afterwards: too much for a grip that holds, cause unknown. The bound keeps it from growing.
+// It slips by 0.8 mm while the palm turns, and not afterwards: too much for a grip that holds, cause
+// unknown. The bound keeps it from growing.
 std::vector<Record> carryMug(MeasureContext& context) { return carryIt(gripperWithMug(), {1000, 1e-6}, context); }
 // 1e-11 m in a minute: contact with it is led anew in each tick.
 std::vector<Record> carryMesh(MeasureContext& context) {
@@ -201,7 +210,8 @@ std::vector<Record> objects(MeasureContext& context) {
           atMost("creep of an upright capsule", creepOf(contact::Capsule{0.02, 0.015}, context), "um", 1e-6)};
 }
 
-// The largest difference between the force of the clamp's jaw and (motor + dry friction)/lead [N], once it is closed, with the motor on or off again.
+// The largest difference between the force of the clamp's jaw and (motor + dry friction)/lead [N], once it
+// is closed, with the motor on or off again.
 double clampImbalance(bool stays_on, double torque, MeasureContext& context) {
   constexpr double kLead = 1.5915494309189535e-4;  // [m/rad]
   constexpr std::size_t kBlock = 1, kJaw = 2;
@@ -219,9 +229,11 @@ double clampImbalance(bool stays_on, double torque, MeasureContext& context) {
     double normal = 0;
     for (int k = 0; k < engine::contactCount(world); ++k) {
       const engine::ContactReport c = engine::contactAt(world, k);
-      if (std::min(c.body, c.other_body) == kBlock && std::max(c.body, c.other_body) == kJaw) normal += c.f_W.dot(c.n_W);
+      if (std::min(c.body, c.other_body) == kBlock && std::max(c.body, c.other_body) == kJaw)
+        normal += c.f_W.dot(c.n_W);
     }
-    const double torques = engine::driveAt(world, 0).force + engine::jointAt(sim.model().world, world, 0).friction_force;
+    const double torques =
+        engine::driveAt(world, 0).force + engine::jointAt(sim.model().world, world, 0).friction_force;
     worst = std::max(worst, std::abs(normal - torques / kLead));
   });
   return count.flagged > 0 ? std::nan("") : worst;
@@ -231,9 +243,9 @@ std::vector<Record> wormClamp(MeasureContext& context) {
   std::vector<Record> records;
   for (const double torque : {0.021, 0.03, 0.1}) {
     for (const bool stays_on : {true, false})
-      records.push_back(
-          atMost(fmt::format("motor of {} N m {}: jaw's force less that of the worm, largest", torque, stays_on ? "on" : "off"),
-                 clampImbalance(stays_on, torque, context), "N", 1e-6));
+      records.push_back(atMost(fmt::format("motor of {} N m {}: jaw's force less that of the worm, largest", torque,
+                                           stays_on ? "on" : "off"),
+                               clampImbalance(stays_on, torque, context), "N", 1e-6));
   }
   return records;
 }

@@ -1,11 +1,13 @@
-// Circumstances that must not matter: the order of the bodies, how the world is turned, how it moves, and that it ran before.
+// Circumstances that must not matter: the order of the bodies, how the world is
+// turned, how it moves, and that it ran before.
 #include "pincer/tasks/judge/verify/scene_run.h"
 #include "pincer/tasks/judge/verify/verify.h"
 
 namespace pincer::tasks {
 namespace {
 
-// Bodies that meet for half a second without chaos: a sphere slides into rolling, a box slides off a push, a sphere is pinched and slips.
+// Bodies that meet for half a second without chaos: a sphere slides into rolling, a box slides
+// off a push, a sphere is pinched and slips.
 Scene sample() {
   Scene scene = readBuiltinScene("s4_pinch_098");
   scene.duration = 0.12;
@@ -30,7 +32,8 @@ std::vector<Pose> endPoses(Scene scene) {
   return poses;
 }
 
-double largestDistance(const std::vector<Pose>& a, const std::vector<Pose>& b, const std::vector<std::size_t>& order, const Pose& X) {
+double largestDistance(const std::vector<Pose>& a, const std::vector<Pose>& b, const std::vector<std::size_t>& order,
+                       const Pose& X) {
   double worst = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Pose expected = X * a[order[i]];
@@ -48,7 +51,8 @@ std::vector<Record> permutation(MeasureContext&) {
     mixed.bodies[i] = scene.bodies[order[i]];
     mixed.starts[i] = scene.starts[order[i]];
   }
-  return {atMost("bodies in another order: largest change", largestDistance(endPoses(scene), endPoses(mixed), order, {}), "m", 1e-10)};
+  return {atMost("bodies in another order: largest change",
+                 largestDistance(endPoses(scene), endPoses(mixed), order, {}), "m", 1e-10)};
 }
 
 // Fingers are driven along world axes, so a turned world turns without them.
@@ -65,7 +69,8 @@ std::vector<Record> rotation(MeasureContext&) {
     start.v_W = X.q * start.v_W;
     start.w_W = X.q * start.w_W;
   }
-  return {atMost("world turned and moved: largest change", largestDistance(endPoses(scene), endPoses(turned), {0, 1, 2}, X), "m", 1e-10)};
+  return {atMost("world turned and moved: largest change",
+                 largestDistance(endPoses(scene), endPoses(turned), {0, 1, 2}, X), "m", 1e-10)};
 }
 
 // Two spheres meet in free fall, seen from a moving frame.
@@ -74,12 +79,14 @@ std::vector<Record> galileo(MeasureContext&) {
   scene.fingers.clear();
   scene.bodies = {scene.bodies[2], scene.bodies[2]};
   scene.bodies[1].name = "other";
-  scene.starts = {{{Quat::Identity(), {0, 0, 0}}, {0.5, 0.02, 0}, {1, 2, 3}}, {{Quat::Identity(), {0.06, 0.01, 0}}, {-0.3, 0, 0.01}, {}}};
+  scene.starts = {{{Quat::Identity(), {0, 0, 0}}, {0.5, 0.02, 0}, {1, 2, 3}},
+                  {{Quat::Identity(), {0.06, 0.01, 0}}, {-0.3, 0, 0.01}, {}}};
   Scene moving = scene;
   const Vec3 v(3, -2, 1);
   for (engine::BodyStart& start : moving.starts) start.v_W += v;
   const Pose X{Quat::Identity(), scene.duration * v};
-  return {atMost("world moving at 3.7 m/s: largest change", largestDistance(endPoses(scene), endPoses(moving), {0, 1}, X), "m", 1e-10)};
+  return {atMost("world moving at 3.7 m/s: largest change",
+                 largestDistance(endPoses(scene), endPoses(moving), {0, 1}, X), "m", 1e-10)};
 }
 
 std::vector<Record> rerun(MeasureContext&) {
@@ -87,7 +94,8 @@ std::vector<Record> rerun(MeasureContext&) {
   MeasureContext quiet;
   runThrough(a, quiet, [] {});
   runThrough(b, quiet, [] {});
-  return {exactly("runs whose state differs in a bit", engine::hashOf(a.state().world) == engine::hashOf(b.state().world) ? 0 : 1, "-", 0)};
+  return {exactly("runs whose state differs in a bit",
+                  engine::hashOf(a.state().world) == engine::hashOf(b.state().world) ? 0 : 1, "-", 0)};
 }
 
 }  // namespace

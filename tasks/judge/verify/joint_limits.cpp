@@ -60,8 +60,9 @@ std::vector<Record> stops(MeasureContext&) {
           unflagged(landing)};
 }
 
-// A slider of 1 kg, and on it one of 0.5 kg that slides askew: M = (1.5, .5 c; .5 c, .5), c the cosine between the two. Constant forces give each its own
-// constant acceleration, so that both stops are hit at the same moment; then each goes back by its own e, however the two pull at each other.
+// A slider of 1 kg, and on it one of 0.5 kg that slides askew: M = (1.5, .5 c; .5 c, .5), c the cosine between the two.
+// Constant forces give each its own constant acceleration, so that both stops are hit at the same moment; then each
+// goes back by its own e, however the two pull at each other.
 std::vector<Record> twoStops(MeasureContext&) {
   constexpr double kFirst = 1, kSecond = 0.5, kWay = 0.1, kCosine = 0.6;
   constexpr std::array<double, 2> kFaster{2, 3}, kRestitution{0.5, 0.8};  // accelerations [m/s^2]
@@ -93,13 +94,15 @@ std::vector<Record> twoStops(MeasureContext&) {
   const std::array<double, 2> rest{world.position(0), world.position(1)};
   world.run(2);
   return {atMost("places and speeds 34 ms after both are hit, error", worst, "m, m/s", 1e-10),
-          atMost("at rest beyond the stops", std::max(std::abs(rest[0] - kWay), std::abs(rest[1] - kWay * kFaster[1] / kFaster[0])), "m",
-                 1e-10),
-          exactly("moved in 2 s after that", std::abs(world.position(0) - rest[0]) + std::abs(world.position(1) - rest[1]), "m", 0),
+          atMost("at rest beyond the stops",
+                 std::max(std::abs(rest[0] - kWay), std::abs(rest[1] - kWay * kFaster[1] / kFaster[0])), "m", 1e-10),
+          exactly("moved in 2 s after that",
+                  std::abs(world.position(0) - rest[0]) + std::abs(world.position(1) - rest[1]), "m", 0),
           unflagged(world)};
 }
 
-// A pendulum let go at the height of its pivot falls to its stop straight below: omega^2 = 2 m g d/I there, after a quarter of its period.
+// A pendulum let go at the height of its pivot falls to its stop straight below: omega^2 = 2 m g
+// d/I there, after a quarter of its period.
 std::vector<Record> pendulumAndStop(MeasureContext&) {
   constexpr double kLever = 0.3, kMass = 0.4, kInertia = 1e-3, kRestitution = 0.8;
   Linkage world;
@@ -115,8 +118,8 @@ std::vector<Record> pendulumAndStop(MeasureContext&) {
   const double w = world.velocity(0), below = std::numbers::pi / 2 - world.position(0);
   rebound = w * w + fall * (1 - math::cos(below));
   // A joint with stops is of second order in the tick.
-  return {atMost("energy after the stop over e^2 of that before, less 1", std::abs(rebound / (kRestitution * kRestitution * fall) - 1), "-",
-                 1e-4),
+  return {atMost("energy after the stop over e^2 of that before, less 1",
+                 std::abs(rebound / (kRestitution * kRestitution * fall) - 1), "-", 1e-4),
           unflagged(world)};
 }
 
@@ -183,15 +186,16 @@ std::vector<Record> tickSizes(MeasureContext& context) {
   return {atMost("time of a hit, ticks of 0.1 to 4 ms, largest error", time, "s", 1e-12),
           atMost("at rest beyond the stop, likewise", rest, "m", 1e-12),
           atMost("moved in 4 s at .999 of dry friction, likewise", held, "m", 1e-15),
-          atMost("way in 1 s at 1.001, likewise, relative error", slides, "-", 1e-9), exactly("flagged ticks", flagged, "-", 0)};
+          atMost("way in 1 s at 1.001, likewise, relative error", slides, "-", 1e-9),
+          exactly("flagged ticks", flagged, "-", 0)};
 }
 
 // A drive's force at its limit.
 std::vector<Record> limitedDrive(MeasureContext&) {
   constexpr double kLimit = 4;
   Linkage world(1e-3, Vec3::Zero());
-  engine::DriveModel drive = motorOn(
-      world.joint(jointAlong(JointKind::kSlider, Vec3::UnitX(), world.ball(1, 1e-3, Vec3::Zero()), Vec3::Zero(), -1, Vec3::Zero())));
+  engine::DriveModel drive = motorOn(world.joint(jointAlong(
+      JointKind::kSlider, Vec3::UnitX(), world.ball(1, 1e-3, Vec3::Zero()), Vec3::Zero(), -1, Vec3::Zero())));
   drive.control = engine::DriveModel::Control::kPosition;
   drive.stiffness = 1e4;
   drive.damping = 200;

@@ -54,7 +54,9 @@ class Linkage {
   }
   double position(int joint) const { return engine::jointPosition(model_, state_, joint); }
   double velocity(int joint) const { return engine::jointVelocity(model_, state_, joint); }
-  void set(int joint, double position, double velocity = 0) { engine::setJoint(model_, state_, joint, position, velocity); }
+  void set(int joint, double position, double velocity = 0) {
+    engine::setJoint(model_, state_, joint, position, velocity);
+  }
   double energy() const { return engine::kineticEnergy(model_, state_) + engine::potentialEnergy(model_, state_); }
   const engine::WorldState& state() const { return state_; }
   double time() const { return state_.time; }
@@ -78,7 +80,8 @@ class Linkage {
 inline Record unflagged(const Linkage& world) { return exactly("flagged ticks", world.flagged, "-", 0); }
 
 // The joint's frames: z along `axis`, at p_A in body a, at p_B in b or the world.
-inline engine::JointModel jointAlong(engine::JointKind kind, const Vec3& axis, int a, const Vec3& p_A, int b, const Vec3& p_B) {
+inline engine::JointModel jointAlong(engine::JointKind kind, const Vec3& axis, int a, const Vec3& p_A, int b,
+                                     const Vec3& p_B) {
   const Quat q(frameFromNormal(axis));
   return {kind, a, b, Pose{q, p_A}, Pose{q, p_B}};
 }

@@ -1,6 +1,8 @@
-// Linkages that close: their joints hold to round-off, and they move and rest as mechanisms of one freedom do (tasks/judge/exact/linkages.h).
+// Linkages that close: their joints hold to round-off, and they move and rest as mechanisms of one
+// freedom do (tasks/judge/exact/linkages.h).
 //
-//   four-bar       a crank that turns for 60 s: Freudenstein's equation, energy; where it is after 10 s; a load on the rocker that a drive at the crank holds
+//   four-bar       a crank that turns for 60 s: Freudenstein's equation, energy; where it is after 10 s; a load on
+//                  the rocker that a drive at the crank holds
 //   slider-crank   where it is after 10 s; the slider's place of the crank's angle
 #include "pincer/tasks/judge/exact/linkages.h"
 #include "pincer/tasks/judge/verify/linkage.h"
@@ -30,7 +32,8 @@ Mechanism fourBar(double h, double start) {
   Mechanism m{Linkage(h, Vec3::Zero())};
   const double b = kBars.rockerAngle(start);
   const Vec3 A = at(kBars.crank, start), O(kBars.ground, 0, 0), B = O + at(kBars.rocker, b);
-  const int crank = m.world.ball(0.1, kBars.crank_inertia, Vec3::Zero()), rocker = m.world.ball(0.1, kBars.rocker_inertia, O),
+  const int crank = m.world.ball(0.1, kBars.crank_inertia, Vec3::Zero()),
+            rocker = m.world.ball(0.1, kBars.rocker_inertia, O),
             coupler = m.world.ball(kBars.coupler_mass, kBars.coupler_inertia, 0.5 * (A + B));
   m.world.exclude(crank, rocker);  // what nothing can touch goes to 4th order
   m.crank = m.world.joint(pivotAt(crank, Vec3::Zero(), -1, Vec3::Zero()));
@@ -43,7 +46,8 @@ Mechanism fourBar(double h, double start) {
 Mechanism sliderCrank(double h, double start) {
   Mechanism m{Linkage(h, Vec3::Zero())};
   const Vec3 A = at(kEngine.crank, start), B(kEngine.place(start), 0, 0);
-  const int crank = m.world.ball(0.1, kEngine.crank_inertia, Vec3::Zero()), slider = m.world.ball(kEngine.slider_mass, 1e-4, B),
+  const int crank = m.world.ball(0.1, kEngine.crank_inertia, Vec3::Zero()),
+            slider = m.world.ball(kEngine.slider_mass, 1e-4, B),
             rod = m.world.ball(kEngine.rod_mass, kEngine.rod_inertia, 0.5 * (A + B));
   m.world.exclude(crank, slider);
   m.crank = m.world.joint(pivotAt(crank, Vec3::Zero(), -1, Vec3::Zero()));
@@ -86,7 +90,8 @@ std::vector<Record> fourBars(MeasureContext& context) {
     return angleError(std::move(run), kBars);
   };
   const double coarse = errorAt(1e-3), fine = errorAt(5e-4);
-  return {atMost("Freudenstein's equation through 60 s, miss", miss, "-", 1e-12), atMost("energy in 60 s, drift", drift, "-", 1e-6),
+  return {atMost("Freudenstein's equation through 60 s, miss", miss, "-", 1e-12),
+          atMost("energy in 60 s, drift", drift, "-", 1e-6),
           atMost("angle of the crank after 10 s, error", coarse, "rad", 1e-5),
           atLeast("at 1 ms over 0.5 ms, errors", coarse / fine, "-", 8), unflagged(m.world)};
 }
@@ -120,12 +125,14 @@ std::vector<Record> sliderCranks(MeasureContext&) {
   double miss = 0;
   for (int n = 0; n < 100; ++n) {
     m.world.run(0.1);
-    miss = std::max(miss, std::abs(kEngine.place(kStart + m.world.position(m.crank)) - kEngine.place(kStart) - m.world.position(m.out)));
+    miss = std::max(miss, std::abs(kEngine.place(kStart + m.world.position(m.crank)) - kEngine.place(kStart) -
+                                   m.world.position(m.out)));
   }
   Mechanism run = sliderCrank(1e-3, kStart);
   addIdleMotor(run);
   return {atMost("place of the slider, miss", miss, "m", 1e-13),
-          atMost("angle of the crank after 10 s, error", angleError(std::move(run), kEngine), "rad", 1e-5), unflagged(m.world)};
+          atMost("angle of the crank after 10 s, error", angleError(std::move(run), kEngine), "rad", 1e-5),
+          unflagged(m.world)};
 }
 
 }  // namespace

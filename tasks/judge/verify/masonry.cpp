@@ -20,7 +20,8 @@ contact::Shape stoneOf(double thickness) {
   for (const double y : {-kArchDepth / 2, kArchDepth / 2}) {
     for (const double side : {-1.0, 1.0}) {
       for (const double r : {1 - thickness / 2, 1 + thickness / 2})
-        points.push_back(kArchRadius * Vec3(r * side * math::sin(half_angle), y / kArchRadius, r * math::cos(half_angle)));
+        points.push_back(kArchRadius *
+                         Vec3(r * side * math::sin(half_angle), y / kArchRadius, r * math::cos(half_angle)));
     }
   }
   return contact::Convex{contact::Polytope::hullOf(points, "stone")};
@@ -56,8 +57,8 @@ std::vector<Record> arch(MeasureContext& context) {
     return !archFalls(scene, thickness);
   });
   return {atMost("least thickness of 16 stones, relative error", std::abs(found / exact - 1), "-", 1e-5),
-          atMost("Milankovitch's 0.1075: the exact answer of 10,000 stones, off by", std::abs(exact::leastThicknessOfArch(10000) - 0.1075),
-                 "-", 5e-5)};
+          atMost("Milankovitch's 0.1075: the exact answer of 10,000 stones, off by",
+                 std::abs(exact::leastThicknessOfArch(10000) - 0.1075), "-", 5e-5)};
 }
 
 std::vector<Record> stack(MeasureContext& context) {
@@ -95,12 +96,15 @@ std::vector<Record> massRatio(MeasureContext& context) {
       force_error = std::max(force_error, std::abs(carried[i] / weight - 1));
     }
   });
-  return {atMost("force on a face over the weight above, less 1", force_error, "-", 1e-6), atMost("sunk or risen", 1e6 * sunk, "um", 1e-6),
+  return {atMost("force on a face over the weight above, less 1", force_error, "-", 1e-6),
+          atMost("sunk or risen", 1e6 * sunk, "um", 1e-6),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
 
 }  // namespace
 
-std::vector<Measurement> verifyMasonry() { return {{"stand/arch", arch}, {"stand/stack-of-ten", stack}, {"stand/mass-ratio", massRatio}}; }
+std::vector<Measurement> verifyMasonry() {
+  return {{"stand/arch", arch}, {"stand/stack-of-ten", stack}, {"stand/mass-ratio", massRatio}};
+}
 
 }  // namespace pincer::tasks

@@ -1,7 +1,9 @@
-// Objects between two pads: held, shaken, let slip, spun, rolled, hung beside their centre. The answers are closed forms:
+// Objects between two pads: held, shaken, let slip, spun, rolled, hung beside
+// their centre. The answers are closed forms:
 //
 //   stuck     the object moves as its pads do
-//   tilt      a plate whose centre of mass is e beside the pads hangs at 2 k theta = m g e cos theta on their turning springs
+//   tilt      a plate whose centre of mass is e beside the pads hangs at 2 k theta =
+//             m g e cos theta on their turning springs
 //   slip      mu = .98 m g/(2 N): falls with .02 g and doesn't turn
 //   spin      four corners at radius r carry N/4 each: w' = -2 mu N r / I, about the pads' normal
 //   rod       pads that move apart by d turn a rod of radius R between them by d/(2 R), without slip
@@ -61,7 +63,8 @@ class PadRun {
     options.gravity_W = grip.gravity_W;
     engine::WorldBuilder builder(options);
     engine::BodySpec object{"object", grip.shape, true, grip.mass, {grip.mu, grip.mu}};
-    if (grip.beside > 0) object.inertia = engine::GivenInertia{Vec3(0, grip.beside, 0), kBesideMoment * Mat3::Identity()};
+    if (grip.beside > 0)
+      object.inertia = engine::GivenInertia{Vec3(0, grip.beside, 0), kBesideMoment * Mat3::Identity()};
     builder.addBody(object);
     std::vector<grasp::FingerModel> fingers(2);
     std::vector<Vec3> places;
@@ -191,7 +194,8 @@ std::vector<Lie> lies() {
     all.push_back({contact::Box{Vec3(kR, 0.02, 0.025)}, kR, angle});
   }
   all.push_back({contact::Cylinder{kR, 0.012}, 0.012, kQuarter, Vec3::UnitY()});
-  for (const double flat : {0.005, 0.012}) all.push_back({contact::CylinderWithFlat{kR, 0.012, flat}, kR, kQuarter, Vec3::UnitZ()});
+  for (const double flat : {0.005, 0.012})
+    all.push_back({contact::CylinderWithFlat{kR, 0.012, flat}, kR, kQuarter, Vec3::UnitZ()});
   return all;
 }
 
@@ -202,7 +206,7 @@ std::vector<Record> sweeps(MeasureContext& context) {
   for (const Lie& lie : lies()) {
     for (std::size_t k = 0; k < 4 * kWidths.size(); ++k, ++grips) {
       PadGrip grip{lie.shape, lie.half};
-      grip.q_WB = Quat(Eigen::AngleAxisd(lie.angle, lie.axis));
+      grip.q_WB = quatFromRotationVector(lie.angle * lie.axis);
       grip.along = lie.along;
       grip.width = kWidths[k / 4];
       grip.patch_radius = k & 1 ? 0.004 : 0;
@@ -251,7 +255,8 @@ Measurement curvedOf(const char* name, const contact::TriangleMesh& mesh) {
   return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
 }
 
-// Friction carries five times its moment; hung until it stands. The lever is what the pads' sag and its own landing leave of `beside`.
+// Friction carries five times its moment; hung until it stands. The lever is what the pads'
+// sag and its own landing leave of `beside`.
 std::vector<Record> hangs(MeasureContext&) {
   PadGrip grip{kBrick};
   grip.mass = 0.2;
@@ -264,7 +269,8 @@ std::vector<Record> hangs(MeasureContext&) {
   constexpr double kHangs = 0.0587585;  // the root of 0.4 theta = 0.2 kg 9.81 m/s^2 0.012 m cos theta
   const Vec3& turn_W = run.state.world.points[0].turn_W;
   const double moment = grip.mass * kVerifyG * (run.place().y() - run.padsPlace().y());
-  return {atMost("2 k theta over the weight's moment, less 1", std::abs(2 * grip.turn_stiffness * turn_W.norm() / moment - 1), "-", 1e-9),
+  return {atMost("2 k theta over the weight's moment, less 1",
+                 std::abs(2 * grip.turn_stiffness * turn_W.norm() / moment - 1), "-", 1e-9),
           atMost("theta off m g e cos theta/(2 k)", std::abs(turn_W.norm() / kHangs - 1), "-", 1e-3),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
@@ -303,7 +309,8 @@ std::vector<Record> slipsOut(double heading, MeasureContext&) {
   PadRun run(grip);
   for (int i = 0; i < 300; ++i) run.tick();
   const double whole = 0.5 * 0.02 * kVerifyG * run.time() * run.time();
-  return {atMost("way, error over the whole way", std::abs((run.place() - Vec3(0, 0, kUp)).dot(down) / whole - 1), "-", 1e-9),
+  return {atMost("way, error over the whole way", std::abs((run.place() - Vec3(0, 0, kUp)).dot(down) / whole - 1), "-",
+                 1e-9),
           atMost("rotation", angleBetween(Quat::Identity(), run.turned()), "rad", 1e-6),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
@@ -317,14 +324,16 @@ std::vector<Record> spinsDown(MeasureContext&) {
   grip.gravity_W.setZero();
   grip.w_W = Vec3(20, 0, 0);
   PadRun run(grip);
-  const double inertia = grip.mass * (0.04 * 0.04 + 0.05 * 0.05) / 12, r = std::sqrt(2.0) * (0.5 * grip.width - kRounding);
+  const double inertia = grip.mass * (0.04 * 0.04 + 0.05 * 0.05) / 12,
+               r = std::sqrt(2.0) * (0.5 * grip.width - kRounding);
   const double braking = 2 * grip.mu * grip.press * r / inertia, end = grip.w_W.x() / braking;
   while (run.time() < 0.5 * end) run.tick();
   const double w = engine::bodyAngularVelocity(run.model.world, run.state.world, 0).x();
   const double error = std::abs((grip.w_W.x() - w) / (braking * run.time()) - 1);
   while (run.time() < end + 0.02) run.tick();
   return {atMost("torque while it slips over 2 mu N r, less 1", error, "-", 1e-3),
-          atMost("spin 20 ms after I w/(2 mu N r)", engine::bodyAngularVelocity(run.model.world, run.state.world, 0).norm(), "rad/s", 1e-6),
+          atMost("spin 20 ms after I w/(2 mu N r)",
+                 engine::bodyAngularVelocity(run.model.world, run.state.world, 0).norm(), "rad/s", 1e-6),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
 
@@ -372,7 +381,8 @@ std::vector<Measurement> verifyPads() {
           tipOf("pads/tip-ellipsoid", contact::EllipsoidTip{Vec3(0.006, 0.009, 0.008)}, 0.006),
           tipOf("pads/tip-round", roundPad(0.02), kHalfThickness),
           meshOf("pads/mesh-box", contact::gridBox(Vec3(0.015, 0.02, 0.025), 6), 0.015, 0.02),
-          meshOf("pads/mesh-cylinder", contact::lathe({{0, -0.02}, {0.018, -0.02}, {0.018, 0.02}, {0, 0.02}}, 48), 0.018, 0.02),
+          meshOf("pads/mesh-cylinder", contact::lathe({{0, -0.02}, {0.018, -0.02}, {0.018, 0.02}, {0, 0.02}}, 48),
+                 0.018, 0.02),
           curvedOf("pads/mesh-ball", contact::geodesicSphere(0.015, 8)),
           curvedOf("pads/mesh-barrel", contact::lathe(bulging(0.015, 0.004, 0.02), 48)),
           curvedOf("pads/mesh-short-barrel", contact::lathe(bulging(0.015, 0.001, 0.006), 48)),

@@ -37,7 +37,8 @@ std::vector<Record> slipOut(MeasureContext& context) {
   Simulation sim(readBuiltinScene("s4_pinch_098"));
   const exact::SlidingPinch exact{0.1, 0.02, 0.05, 0.008, 2, 0.98 * 0.1 * kVerifyG / 4, kVerifyG};
   constexpr double kDepth = 0.005;
-  return {atMost("time to drop 5 mm, relative", std::abs(measuredDropTime(sim, kDepth, context) / exact.dropTime(kDepth) - 1), "-", 1e-4)};
+  return {atMost("time to drop 5 mm, relative",
+                 std::abs(measuredDropTime(sim, kDepth, context) / exact.dropTime(kDepth) - 1), "-", 1e-4)};
 }
 
 std::vector<Record> flatSlide(MeasureContext& context) {
@@ -54,7 +55,8 @@ std::vector<Record> flatSlide(MeasureContext& context) {
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
 
-// Bisection of the friction that just holds: a drop of 1 nm within 1 s counts as slipping, which 2e-10 below the limit causes.
+// Bisection of the friction that just holds: a drop of 1 nm within 1 s counts as
+// slipping, which 2e-10 below the limit causes.
 std::vector<Record> holdThreshold(MeasureContext& context) {
   const Scene scene = readBuiltinScene("s4_pinch");
   const double limit = 0.1 * kVerifyG / 4;
@@ -69,7 +71,8 @@ std::vector<Record> holdThreshold(MeasureContext& context) {
     runThrough(sim, quiet, [] {});
     return std::abs(sim.bodyPose(0).p.z() - 0.1) < 1e-9;
   };
-  return {atMost("friction that just holds over m g/(2 N), less 1", std::abs(threshold(0.9, 1.1, 34, holds) - 1), "-", 1e-8)};
+  return {atMost("friction that just holds over m g/(2 N), less 1", std::abs(threshold(0.9, 1.1, 34, holds) - 1), "-",
+                 1e-8)};
 }
 
 std::vector<Record> lift(MeasureContext& context) {
@@ -83,11 +86,13 @@ std::vector<Record> lift(MeasureContext& context) {
     error = std::max(error, std::abs(z - 0.1 - rises[static_cast<std::size_t>(sim.ticks() - 1)]));
     slip = std::max(slip, std::abs(z - 0.5 * (fingers[0].p_W.z() + fingers[1].p_W.z())));
   });
-  return {atMost("trajectory, largest deviation", 1e6 * error, "um", 1e-2), atMost("slip against the fingers", 1e6 * slip, "um", 1e-6),
+  return {atMost("trajectory, largest deviation", 1e6 * error, "um", 1e-2),
+          atMost("slip against the fingers", 1e6 * slip, "um", 1e-6),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
 
-// Bisection of the friction that holds a plate beside its centre of mass; a turn of 1e-6 rad within 1 s counts as slipping.
+// Bisection of the friction that holds a plate beside its centre of mass; a turn
+// of 1e-6 rad within 1 s counts as slipping.
 std::vector<Record> offsetPlate(MeasureContext& context) {
   const Scene scene = readBuiltinScene("plate_between_soft_fingers");
   const double exact = exact::leastFrictionOfOffsetPlate(0.08, 0.01, 0.005, 2, kVerifyG);
@@ -101,7 +106,8 @@ std::vector<Record> offsetPlate(MeasureContext& context) {
     runThrough(sim, quiet, [] {});
     return angleBetween(Quat::Identity(), sim.bodyPose(0).q) < 1e-6;
   };
-  return {atMost("friction that just holds, relative", std::abs(threshold(0.9 * exact, 1.1 * exact, 30, holds) / exact - 1), "-", 1e-6)};
+  return {atMost("friction that just holds, relative",
+                 std::abs(threshold(0.9 * exact, 1.1 * exact, 30, holds) / exact - 1), "-", 1e-6)};
 }
 
 std::vector<Record> slidingSpinningPlate(MeasureContext& context) {
@@ -116,11 +122,12 @@ std::vector<Record> slidingSpinningPlate(MeasureContext& context) {
   });
   const Pose rest = sim.bodyPose(0);
   const double angle = 2 * math::atan2(rest.q.x(), rest.q.w());
-  // First order in the tick while the friction turns (it has the direction of the tick's end): over 14 rad of turning the angle lags by 0.1,
-  // and the place, which goes round with it, by as much; a tenth of that at 0.1 ms.
-  return {atMost("place of rest, error over way", (Vec2(rest.p.y(), rest.p.z()) - exact.p).norm() / exact.p.norm(), "-", 0.15),
-          atMost("angle at rest, error over angle", std::abs(std::remainder(exact.angle - angle, 2 * std::numbers::pi)) / exact.angle, "-",
-                 1e-2),
+  // First order in the tick while the friction turns (it has the direction of the tick's end): over 14 rad of turning
+  // the angle lags by 0.1, and the place, which goes round with it, by as much; a tenth of that at 0.1 ms.
+  return {atMost("place of rest, error over way", (Vec2(rest.p.y(), rest.p.z()) - exact.p).norm() / exact.p.norm(), "-",
+                 0.15),
+          atMost("angle at rest, error over angle",
+                 std::abs(std::remainder(exact.angle - angle, 2 * std::numbers::pi)) / exact.angle, "-", 1e-2),
           atMost("sliding ends before or after spinning by", 1e3 * std::abs(slid_until - spun_until), "ms", 4),
           atMost("time of rest, relative error", std::abs(slid_until / exact.time - 1), "-", 1e-2)};
 }
@@ -130,7 +137,8 @@ std::vector<Record> handover(MeasureContext& context) {
   Pose start;
   double moved = 0, turned = 0;
   runThrough(sim, context, [&] {
-    if (sim.ticks() == 300) start = sim.bodyPose(0);  // the fingers begin 2 mm deep in the box, which slips until they are out
+    // the fingers begin 2 mm deep in the box, which slips until they are out
+    if (sim.ticks() == 300) start = sim.bodyPose(0);
     if (sim.ticks() <= 300) return;
     moved = std::max(moved, (sim.bodyPose(0).p - start.p).norm());
     turned = std::max(turned, angleBetween(start.q, sim.bodyPose(0).q));

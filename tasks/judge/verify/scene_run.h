@@ -20,7 +20,8 @@ inline void setFriction(Scene& scene, double mu) {
 
 // Gravity of a slope of angle `theta` whose downhill direction has the heading `heading` about z [rad].
 inline Vec3 tiltedGravity(double theta, double heading) {
-  return kVerifyG * Vec3(math::sin(theta) * math::cos(heading), math::sin(theta) * math::sin(heading), -math::cos(theta));
+  return kVerifyG *
+         Vec3(math::sin(theta) * math::cos(heading), math::sin(theta) * math::sin(heading), -math::cos(theta));
 }
 
 // Ticks that weren't clean. A case that promises exactness adds this to its records.
@@ -43,7 +44,8 @@ RunCount runThrough(Simulation& simulation, MeasureContext& context, const Look&
   return count;
 }
 
-// The value between `low`, where holds() is false, and `high`, where it is true, at which it changes, to 2^-steps of the distance.
+// The value between `low`, where holds() is false, and `high`, where it is true, at which
+// it changes, to 2^-steps of the distance.
 inline double threshold(double low, double high, int steps, const std::function<bool(double)>& holds) {
   for (int i = 0; i < steps; ++i) {
     const double middle = 0.5 * (low + high);

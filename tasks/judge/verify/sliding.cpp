@@ -17,9 +17,11 @@ std::vector<Record> stick(std::string_view scene, MeasureContext& context) {
     swing = std::max(swing, offset);
     if (sim.ticks() == 1000) first_second = offset;
   });
-  // The rest that the solver leaves at its tolerance makes the box swing about its anchor by a few 1e-15 m for some ticks; that is bounded too.
+  // The rest that the solver leaves at its tolerance makes the box swing about its anchor by a few
+  // 1e-15 m for some ticks; that is bounded too.
   return {atMost("creep, after 1 s", first_second, "um", 1e-9),
-          atMost("creep, after 10 s", 1e6 * (sim.bodyPose(1).p - start).norm(), "um", 1e-9), atMost("largest swing", swing, "um", 1e-8),
+          atMost("creep, after 10 s", 1e6 * (sim.bodyPose(1).p - start).norm(), "um", 1e-9),
+          atMost("largest swing", swing, "um", 1e-8),
           exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
 }
 
@@ -51,7 +53,8 @@ std::vector<Record> slopes(MeasureContext& context) {
   };
   for (const double theta : {0.05, 0.3, 0.7, 1.0}) {
     for (const double heading : {0.0, 0.4, 1.2}) {
-      for (const double ratio : {0.5, 0.999}) creep = std::max(creep, run(theta, math::tan(theta) / ratio, heading, 0.5).norm());
+      for (const double ratio : {0.5, 0.999})
+        creep = std::max(creep, run(theta, math::tan(theta) / ratio, heading, 0.5).norm());
       for (const double ratio : {1.001, 1.1, 3.0}) {
         const double mu = math::tan(theta) / ratio, way = exact::Slope{theta, mu, kVerifyG}.way(0, 0.5);
         const Vec3 error = run(theta, mu, heading, 0.5) - way * Vec3(math::cos(heading), math::sin(heading), 0);
@@ -59,9 +62,10 @@ std::vector<Record> slopes(MeasureContext& context) {
       }
     }
   }
-  return {
-      // 1e-11 m: what the solver leaves at its relative tolerance of 1e-10 while the box comes to rest in its first ticks.
-      atMost("creep where tan th < mu", 1e6 * creep, "um", 1e-5), atMost("way where tan th > mu, relative error", slide_error, "-", 1e-9)};
+  return {// 1e-11 m: what the solver leaves at its relative tolerance of 1e-10 while
+          // the box comes to rest in its first ticks.
+          atMost("creep where tan th < mu", 1e6 * creep, "um", 1e-5),
+          atMost("way where tan th > mu, relative error", slide_error, "-", 1e-9)};
 }
 
 // A push in any direction ends at the same distance, in that direction, and lifts nothing.
@@ -110,7 +114,8 @@ std::vector<Measurement> verifySliding() {
           {"slide/stick-30deg", [](MeasureContext& c) { return stick("s3_incline_stick_30deg", c); }},
           {"slide/incline", [](MeasureContext& c) { return slide("s3_incline_slide", 0, 0, c); }},
           {"slide/incline-30deg", [](MeasureContext& c) { return slide("s3_incline_slide_30deg", 0, k30, c); }},
-          {"slide/incline-30deg-moving", [](MeasureContext& c) { return slide("s3_incline_slide_30deg_moving", 0.1, k30, c); }},
+          {"slide/incline-30deg-moving",
+           [](MeasureContext& c) { return slide("s3_incline_slide_30deg_moving", 0.1, k30, c); }},
           {"slide/slopes", slopes},
           {"slide/isotropy", isotropy},
           {"slide/no-dilation", dilation}};

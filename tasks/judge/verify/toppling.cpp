@@ -22,7 +22,8 @@ std::vector<Record> tipping(MeasureContext& context) {
     runThrough(sim, quiet, [] {});
     return angleBetween(Quat::Identity(), sim.bodyPose(1).q) > 1e-7;
   };
-  return {atMost("tangent of the slope that tips it over b/h, less 1", std::abs(threshold(0.45, 0.55, 30, tips) / 0.5 - 1), "-", 1e-7)};
+  return {atMost("tangent of the slope that tips it over b/h, less 1",
+                 std::abs(threshold(0.45, 0.55, 30, tips) / 0.5 - 1), "-", 1e-7)};
 }
 
 std::vector<Record> rocking(MeasureContext& context) {
@@ -50,7 +51,8 @@ std::vector<Record> ladder(MeasureContext& context) {
     context.progress(done++ / 26.0);
     Scene trial = scene;
     trial.duration = 0.5;
-    trial.starts[2].X_WB.p = {-kRadius - 0.5 * kLength * math::cos(angle), 0, kRadius + 0.5 * kLength * math::sin(angle)};
+    trial.starts[2].X_WB.p = {-kRadius - 0.5 * kLength * math::cos(angle), 0,
+                              kRadius + 0.5 * kLength * math::sin(angle)};
     trial.starts[2].X_WB.q = quatFromRotationVector({0, std::numbers::pi / 2 - angle, 0});
     Simulation sim(std::move(trial));
     const Quat start = sim.bodyPose(2).q;
@@ -82,14 +84,18 @@ std::vector<Record> painleve(MeasureContext&) {
     sinking = std::max(sinking, -grasp::worldOf(sim.scratch()).contacts.front().u_C.z());
   }
   // In one tick of 0.1 ms gravity alone changes a velocity by 1e-3 m/s, and the tick's geometry is that of its middle.
-  return {atMost("velocity after the jam over three ticks, error", worst, "m/s", 5e-3), atMost("energy gained, relative", gained, "-", 0),
+  return {atMost("velocity after the jam over three ticks, error", worst, "m/s", 5e-3),
+          atMost("energy gained, relative", gained, "-", 0),
           atMost("tip's velocity into the floor", sinking, "m/s", 1e-9)};
 }
 
 }  // namespace
 
 std::vector<Measurement> verifyToppling() {
-  return {{"topple/tipping", tipping}, {"topple/rocking", rocking}, {"topple/ladder", ladder}, {"topple/painleve", painleve}};
+  return {{"topple/tipping", tipping},
+          {"topple/rocking", rocking},
+          {"topple/ladder", ladder},
+          {"topple/painleve", painleve}};
 }
 
 }  // namespace pincer::tasks

@@ -1,4 +1,5 @@
-// Trees of joints that move freely or on drives. Each answer is a closed form or an integration of equations that share no code with the engine (tasks/judge/exact/linkages.h):
+// Trees of joints that move freely or on drives. Each answer is a closed form or an integration of equations that share
+// no code with the engine (tasks/judge/exact/linkages.h):
 //
 //   rods       three hinged rods swing; their error falls by 2^4 when the tick is halved
 //   elliptic   a pendulum whose pivot slides: momentum, and the angle
@@ -29,7 +30,8 @@ Linkage rodsAt(const std::vector<double>& angles, double h) {
     rod.inertia = engine::GivenInertia{Vec3::Zero(), Vec3(across, across, 1e-6).asDiagonal()};
     const int body = world.body(rod, {Pose{q, end - q * Vec3(0, 0, kRod / 2)}});
     const Vec3 on_parent = i == 0 ? Vec3::Zero() : Vec3(0, 0, -kRod / 2);
-    engine::JointModel joint = jointAlong(JointKind::kPivot, Vec3::UnitY(), body, {0, 0, kRod / 2}, i == 0 ? -1 : body - 1, on_parent);
+    engine::JointModel joint =
+        jointAlong(JointKind::kPivot, Vec3::UnitY(), body, {0, 0, kRod / 2}, i == 0 ? -1 : body - 1, on_parent);
     joint.traits.start = i == 0 ? angles[i] : angles[i] - angles[i - 1];
     world.joint(joint);
     for (int other = 0; other < body - 1; ++other) world.exclude(other, body);  // they swing through each other
@@ -58,7 +60,8 @@ double rodsError(double h, MeasureContext& context) {
 
 std::vector<Record> rods(MeasureContext& context) {
   const double coarse = rodsError(1e-3, context), fine = rodsError(5e-4, context);
-  return {atMost("angle after 10 s, error", coarse, "rad", 1e-6), atLeast("at 1 ms over 0.5 ms, errors", coarse / fine, "-", 14)};
+  return {atMost("angle after 10 s, error", coarse, "rad", 1e-6),
+          atLeast("at 1 ms over 0.5 ms, errors", coarse / fine, "-", 14)};
 }
 
 std::vector<Record> doublePendulum(MeasureContext& context) {
@@ -74,10 +77,13 @@ std::vector<Record> doublePendulum(MeasureContext& context) {
   return {atMost("energy in 10 s of large swings, drift over m g l", worst / whole, "-", 1e-7)};
 }
 
-// A disk on a stick whose tip a ball joint holds, started `ratio` times as fast round the vertical as slow precession is. The joint's armature makes it a tree.
+// A disk on a stick whose tip a ball joint holds, started `ratio` times as fast round the vertical as slow precession
+// is. The joint's armature makes it a tree.
 double topError(double spin, double ratio, double h, MeasureContext& context) {
-  constexpr double kMass = 0.1, kLever = 0.04, kAcross = 6e-4, kAlong = 1e-3, kArmature = 1e-6, kAngle = std::numbers::pi / 6;
-  const exact::HeavyTop top{kMass, kLever, kAcross + kMass * kLever * kLever + kArmature, kAlong + kArmature, spin, kVerifyG};
+  constexpr double kMass = 0.1, kLever = 0.04, kAcross = 6e-4, kAlong = 1e-3, kArmature = 1e-6,
+                   kAngle = std::numbers::pi / 6;
+  const exact::HeavyTop top{kMass, kLever,  kAcross + kMass * kLever * kLever + kArmature, kAlong + kArmature,
+                            spin,  kVerifyG};
   const Quat q = quatFromRotationVector({0, kAngle, 0});
   const Vec3 axis = q * Vec3::UnitZ();
   const double heading_rate = ratio * top.slowPrecession(kAngle);
@@ -93,7 +99,9 @@ double topError(double spin, double ratio, double h, MeasureContext& context) {
   double worst = 0;
   for (int n = 1; n <= 100; ++n) {
     world.run(0.1);
-    worst = std::max(worst, (world.state().bodies[0].X_WI.q * Vec3::UnitZ() - top.axisAfter(world.time(), kAngle, heading_rate)).norm());
+    worst = std::max(
+        worst,
+        (world.state().bodies[0].X_WI.q * Vec3::UnitZ() - top.axisAfter(world.time(), kAngle, heading_rate)).norm());
     context.progress(n / 100.0);
   }
   return worst;
@@ -101,9 +109,10 @@ double topError(double spin, double ratio, double h, MeasureContext& context) {
 
 std::vector<Record> top(MeasureContext& context) {
   const double coarse = topError(20, 1, 1e-3, context), swings = topError(20, 0, 1e-3, context);
-  return {atMost("axis over 10 s of steady precession at 20 rad/s, error", coarse, "rad", 1e-6),
-          atMost("axis over 10 s, let go at rest, error", swings, "rad", 1e-6),
-          atLeast("at 10 ms over 5 ms, errors", topError(20, 0, 1e-2, context) / topError(20, 0, 5e-3, context), "-", 12)};
+  return {
+      atMost("axis over 10 s of steady precession at 20 rad/s, error", coarse, "rad", 1e-6),
+      atMost("axis over 10 s, let go at rest, error", swings, "rad", 1e-6),
+      atLeast("at 10 ms over 5 ms, errors", topError(20, 0, 1e-2, context) / topError(20, 0, 5e-3, context), "-", 12)};
 }
 
 std::vector<Record> ellipticPendulum(MeasureContext&) {
@@ -128,17 +137,19 @@ std::vector<Record> ellipticPendulum(MeasureContext&) {
   const exact::EllipticPendulum exact{kBlock, kBob, kInertia, kDistance, kVerifyG};
   const double angle = exact.angle(kStart, kSeconds);
   // The bob hangs at -sin(angle): the block goes the other way.
-  return {atMost("momentum along the rail, over that of the bob at its lowest", momentum / (kBob * std::sqrt(2 * kVerifyG * kDistance)),
-                 "-", 1e-10),
+  return {atMost("momentum along the rail, over that of the bob at its lowest",
+                 momentum / (kBob * std::sqrt(2 * kVerifyG * kDistance)), "-", 1e-10),
           atMost("angle after 10 s, error", std::abs(world.position(turn) - angle), "rad", 1e-6),
-          atMost("way of the block, error", std::abs(world.position(slide) + exact.way(kStart, angle)), "m", 1e-7), unflagged(world)};
+          atMost("way of the block, error", std::abs(world.position(slide) + exact.way(kStart, angle)), "m", 1e-7),
+          unflagged(world)};
 }
 
 // A slider of 1 kg on a drive that pulls to `target`, under its weight or not.
 Linkage driven(double k, double d, double target, bool falls) {
   Linkage world(1e-3, falls ? Vec3(0, 0, -kVerifyG) : Vec3::Zero());
   const int body = world.ball(1, 1e-3, Vec3::Zero());
-  engine::DriveModel drive = motorOn(world.joint(jointAlong(JointKind::kSlider, Vec3::UnitZ(), body, Vec3::Zero(), -1, Vec3::Zero())));
+  engine::DriveModel drive =
+      motorOn(world.joint(jointAlong(JointKind::kSlider, Vec3::UnitZ(), body, Vec3::Zero(), -1, Vec3::Zero())));
   drive.control = engine::DriveModel::Control::kPosition;
   drive.stiffness = k;
   drive.damping = d;
@@ -167,7 +178,8 @@ std::vector<Record> drives(MeasureContext&) {
     world.run(30);
     sag = std::max(sag, std::abs(k * -world.position(0) - kVerifyG));
   }
-  return {atMost("k e at rest less the load", sag, "N", 1e-9), atMost("step of a soft drive, error", stepError(1e4, 60), "-", 2e-4),
+  return {atMost("k e at rest less the load", sag, "N", 1e-9),
+          atMost("step of a soft drive, error", stepError(1e4, 60), "-", 2e-4),
           atMost("step of a stiff drive that is damped, error: half a tick late", stepError(1e6, 1e5), "-", 1e-2)};
 }
 
@@ -184,8 +196,10 @@ std::vector<Record> gear(MeasureContext&) {
   world.controls[0].value = kTorque;
   world.run(1);
   const double rate = kTorque / (kFirst + kRatio * kRatio * kSecond);
-  return {atMost("rate after 1 s over that of I_1 + n^2 I_2, less 1", std::abs(world.velocity(first) / rate - 1), "-", 1e-12),
-          atMost("ratio of the two angles, error", std::abs(world.position(second) / world.position(first) / kRatio - 1), "-", 1e-12),
+  return {atMost("rate after 1 s over that of I_1 + n^2 I_2, less 1", std::abs(world.velocity(first) / rate - 1), "-",
+                 1e-12),
+          atMost("ratio of the two angles, error",
+                 std::abs(world.position(second) / world.position(first) / kRatio - 1), "-", 1e-12),
           unflagged(world)};
 }
 

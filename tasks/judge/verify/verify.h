@@ -1,5 +1,5 @@
-// verify: the accuracy suite. Named scenes whose exact answer is known (tasks/judge/exact), run and compared; `pincer verify` shows it, the tests
-// run it, and its bounds are what pincer promises.
+// verify: the accuracy suite. Named scenes whose exact answer is known (tasks/judge/exact), run and compared; `pincer
+// verify` shows it, the tests run it, and its bounds are what pincer promises.
 #pragma once
 #include <vector>
 

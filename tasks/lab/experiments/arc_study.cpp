@@ -74,14 +74,15 @@ StrokeQuestion questionOf(ArcQuantity quantity, const ArcCondition& condition) {
 TrialTexts textsOf(ArcQuantity quantity) {
   constexpr const char* kFeel = "Stroke to and fro as long as you like; then raise the finger and press Enter";
   if (quantity == ArcQuantity::kTurn) return {kFeel, "Which was the smooth one? 1 or 2, then Enter"};
-  return {kFeel,
-          quantity == ArcQuantity::kBacklash ? "Which had more backlash? 1 or 2, then Enter" : "Which had more delay? 1 or 2, then Enter"};
+  return {kFeel, quantity == ArcQuantity::kBacklash ? "Which had more backlash? 1 or 2, then Enter"
+                                                    : "Which had more delay? 1 or 2, then Enter"};
 }
 
 // The range of a condition's levels.
 void validate(const ArcStudy& study, std::size_t index) {
   const ArcCondition& c = study.conditions[index];
-  const std::string of = fmt::format("{}: condition {}", study.task, printable(c.name)), path = fmt::format("conditions[{}]", index);
+  const std::string of = fmt::format("{}: condition {}", study.task, printable(c.name)),
+                    path = fmt::format("conditions[{}]", index);
   const std::string of_staircase = of + ": staircase", staircase = path + ".staircase";
   visitParameters(c, RangeCheck(of, path));
   visitParameters(c.staircase, RangeCheck(of_staircase, staircase));
@@ -90,11 +91,10 @@ void validate(const ArcStudy& study, std::size_t index) {
   const bool turns = study.quantity == ArcQuantity::kTurn;
   const double most = turns ? kLargestTurn : study.quantity == ArcQuantity::kDelay ? 0.512 : 0.05;
   if (c.staircase.highest <= most && c.staircase.lowest >= (turns ? 1e-5 : 0)) return;
-  throw ParameterError(
-      staircase,
-      fmt::format("{}: staircase: levels from {} to {} can't all be shown: a turn in [0.00001, 0.5] rad, a backlash in [0, 0.05] m, a "
-                  "delay in [0, 0.512] s.",
-                  of, c.staircase.lowest, c.staircase.highest));
+  throw ParameterError(staircase, fmt::format("{}: staircase: levels from {} to {} can't all be shown: a turn in "
+                                              "[0.00001, 0.5] rad, a backlash in [0, 0.05] m, a "
+                                              "delay in [0, 0.512] s.",
+                                              of, c.staircase.lowest, c.staircase.highest));
 }
 
 }  // namespace
@@ -104,12 +104,14 @@ ArcStudy smoothnessStudy() {
   study.task = "smoothness-discrimination";
   const StaircaseRule rule = smoothnessRule();
   const auto smooth = SurfaceVariant::smooth, facet = SurfaceVariant::facet, force = SurfaceVariant::force;
-  study.conditions = {{"C1", "facets, force only", facet, {}, false, 1, rule, 104.1},
-                      {"C2", "force shading, force only", force, {}, false, 1, rule, 16.3},
-                      {"C3", "facets in force and on the tactor", facet, facet, false, 1, rule, 257.3},
-                      {"C4", "facets in force, 2D algorithm on the tactor", facet, smooth, false, 1, rule, 15.6},
-                      {"P1", "2D algorithm in both (pilot)", smooth, smooth, false, 1, rule, segmentsOf(14.8 * kDegree), true},
-                      {"P2", "force shading, facets on the tactor (pilot)", force, facet, false, 1, rule, segmentsOf(0.2 * kDegree), true}};
+  study.conditions = {
+      {"C1", "facets, force only", facet, {}, false, 1, rule, 104.1},
+      {"C2", "force shading, force only", force, {}, false, 1, rule, 16.3},
+      {"C3", "facets in force and on the tactor", facet, facet, false, 1, rule, 257.3},
+      {"C4", "facets in force, 2D algorithm on the tactor", facet, smooth, false, 1, rule, 15.6},
+      {"P1", "2D algorithm in both (pilot)", smooth, smooth, false, 1, rule, segmentsOf(14.8 * kDegree), true},
+      {"P2", "force shading, facets on the tactor (pilot)", force, facet, false, 1, rule, segmentsOf(0.2 * kDegree),
+       true}};
   return study;
 }
 
@@ -131,8 +133,9 @@ ArcStudy delayStudy() {
   study.task = "delay-discrimination";
   study.quantity = ArcQuantity::kDelay;
   const auto smooth = SurfaceVariant::smooth;
-  study.conditions = {{"whole", "whole travel", smooth, smooth, false, 1, delayRule(), 0.061},
-                      {"front-end", "tactor frozen after two thirds of a sweep", smooth, smooth, false, 2. / 3, delayRule(), 0.132}};
+  study.conditions = {
+      {"whole", "whole travel", smooth, smooth, false, 1, delayRule(), 0.061},
+      {"front-end", "tactor frozen after two thirds of a sweep", smooth, smooth, false, 2. / 3, delayRule(), 0.132}};
   return study;
 }
 
@@ -140,13 +143,15 @@ void validate(const ArcStudy& study) {
   const RangeCheck check(study.task);
   visitParameters(study, check);
   if (study.tactor_reach > study.finger_radius)
-    throw ParameterError("tactor_reach",
-                         fmt::format("{}: tactor_reach = {} is out of range (0, finger_radius]: a radian of stroke either way. {}",
-                                     study.task, study.tactor_reach, kAsPublished));
-  if (study.strokes % 2 != 0)
     throw ParameterError(
-        "strokes", fmt::format("{}: strokes = {} is odd, but every stroke has its way back. {}", study.task, study.strokes, kAsPublished));
-  if (study.conditions.empty()) throw ParameterError("conditions", study.task + ": conditions is empty. Give at least one.");
+        "tactor_reach",
+        fmt::format("{}: tactor_reach = {} is out of range (0, finger_radius]: a radian of stroke either way. {}",
+                    study.task, study.tactor_reach, kAsPublished));
+  if (study.strokes % 2 != 0)
+    throw ParameterError("strokes", fmt::format("{}: strokes = {} is odd, but every stroke has its way back. {}",
+                                                study.task, study.strokes, kAsPublished));
+  if (study.conditions.empty())
+    throw ParameterError("conditions", study.task + ": conditions is empty. Give at least one.");
   for (std::size_t i = 0; i < study.conditions.size(); ++i) validate(study, i);
   visitParameters(study.session, RangeCheck(study.task + ": session", "session"));
   validate(study.session, study.task);
@@ -176,8 +181,8 @@ std::vector<StudyRun> ArcExperiment::runs() const {
   return runs;
 }
 
-std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
-                                                     ServoReport& served) {
+std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, StudySink& sink,
+                                                     const std::atomic<bool>& interrupted, ServoReport& served) {
   const int comparison = 1 + static_cast<int>(Random(seedFor(trial.seed, kWhichInterval)).below(2));
   StrokeObserver observer(trial.person_seed);
   observer.begin(cuesOf(trial));
@@ -200,7 +205,8 @@ std::optional<ResponseRecord> ArcExperiment::present(const StudyTrial& trial, St
 }
 
 const ArcCondition& ArcExperiment::conditionNamed(const std::string& name) const {
-  return *std::find_if(study_.conditions.begin(), study_.conditions.end(), [&](const ArcCondition& c) { return c.name == name; });
+  return *std::find_if(study_.conditions.begin(), study_.conditions.end(),
+                       [&](const ArcCondition& c) { return c.name == name; });
 }
 
 double ArcExperiment::pathRadius(const ArcCondition& condition) const {
@@ -230,7 +236,8 @@ ArcTrialSetup ArcExperiment::setupOf(const StudyTrial& trial, int comparison, do
   setup.start_angle = -study_.tactor_reach / study_.finger_radius / (1 + roll);
   setup.freeze_share = condition.travel_share;
   setup.stiffness = study_.stiffness;
-  for (int i = 1; i <= 2; ++i) setup.intervals.push_back(intervalOf(condition, i == comparison ? trial.stimulus.level : 0));
+  for (int i = 1; i <= 2; ++i)
+    setup.intervals.push_back(intervalOf(condition, i == comparison ? trial.stimulus.level : 0));
   setup.asked.trial = trial.trial;
   setup.asked.stride = stride_;
   setup.asked.training = trial.training;
@@ -259,11 +266,13 @@ ArcInterval ArcExperiment::intervalOf(const ArcCondition& condition, double leve
 StudyPage ArcExperiment::introduction(const StudyRun& run) const {
   const ArcCondition& condition = conditionNamed(run.condition);
   StudyPage page;
-  page.lines = {"Two things are felt, one after the other; a tone begins each. Stroke them fore and aft, along the finger.",
-                "When you have felt enough, raise the finger and press Enter. There is no way back."};
+  page.lines = {
+      "Two things are felt, one after the other; a tone begins each. Stroke them fore and aft, along the finger.",
+      "When you have felt enough, raise the finger and press Enter. There is no way back."};
   if (study_.quantity == ArcQuantity::kTurn) {
     page.title = "Which is the smooth one?";
-    page.lines.push_back("One is a smooth arc, the other has flat facets. In the end press 1 or 2 for the smooth one, then Enter.");
+    page.lines.push_back(
+        "One is a smooth arc, the other has flat facets. In the end press 1 or 2 for the smooth one, then Enter.");
   } else if (study_.quantity == ArcQuantity::kBacklash) {
     page.title = "Which has more backlash?";
     page.lines.push_back("On one, the place on your fingerpad lags when you turn back: that is backlash.");
@@ -273,7 +282,8 @@ StudyPage ArcExperiment::introduction(const StudyRun& run) const {
     page.title = "Which has more delay?";
     page.lines.push_back("On one, the place on your fingerpad comes later than your finger moves: that is delay.");
     page.lines.push_back("In the end press 1 or 2 for the one with more of it, then Enter.");
-    if (condition.travel_share < 1) page.lines.push_back("Touch one side, sweep to the other, raise the finger; again and again.");
+    if (condition.travel_share < 1)
+      page.lines.push_back("Touch one side, sweep to the other, raise the finger; again and again.");
   }
   return page;
 }
@@ -285,7 +295,8 @@ std::vector<ListedStimulus> ArcExperiment::training(const StudyRun& run) const {
 std::string ArcExperiment::feedback(const ResponseRecord& response) const {
   constexpr std::array<const char*, 3> kHad = {"was the smooth one", "had more backlash", "had more delay"};
   return fmt::format("The {} {}; you said {}. {}", response.interval == 1 ? "first" : "second",
-                     kHad[static_cast<std::size_t>(study_.quantity)], response.answer, response.correct ? "Right." : "Not this time.");
+                     kHad[static_cast<std::size_t>(study_.quantity)], response.answer,
+                     response.correct ? "Right." : "Not this time.");
 }
 
 // The arc as a whole cylinder, the blade as it is.
@@ -301,7 +312,8 @@ ArcPicture ArcExperiment::pictureOf(const ArcCondition& condition) const {
   return {contact::Convex{contact::Polytope::hullOf(corners, "the edge")}, {}};
 }
 
-// Up one side and down the other, the body on the left: from the right flank over the edge, a sharp corner, to the left one.
+// Up one side and down the other, the body on the left: from the right flank over
+// the edge, a sharp corner, to the left one.
 contact::Polyline ArcExperiment::blade() const {
   const double half = 0.5 * study_.edge_angle;
   const Vec2 down = kBladeFlank * Vec2(math::sin(half), -math::cos(half));

@@ -1,10 +1,13 @@
-// arc_study: the three experiments in which a finger strokes a curve twice and says which time was the comparison, level by staircase.
+// arc_study: the three experiments in which a finger strokes a curve twice and says which
+// time was the comparison, level by staircase.
 //
-//   smoothness-discrimination  a polygon of `level` radians from segment to segment, against the exact arc: which was the smooth one?
+//   smoothness-discrimination  a polygon of `level` radians from segment to segment, against
+//                              the exact arc: which was the smooth one?
 //   backlash-discrimination    `level` metres of backlash added to the display's own: which had more backlash?
 //   delay-discrimination       `level` seconds of delay added: which had more delay?
 //
-// Strokes go along the finger (fore-aft). Source of the designs: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2 and 3. Smoothness:
+// Strokes go along the finger (fore-aft). Source of the designs: A. J. Doxon, doctoral dissertation, University
+// of Utah (2014), ch. 2 and 3. Smoothness:
 //
 //        force                        tactor
 //   C1   facets                       none: held at the middle of the thimble, in both intervals
@@ -14,11 +17,14 @@
 //   P1   2D algorithm                 2D algorithm       pilots: after C1 .. C4, whose order is a reduced Latin square
 //   P2   force shading                facets
 //
-// Thresholds are counted in segments of the published arc (tasks/lab/study/arc_segments.h). What the text leaves open is ours:
-//   - the exact arc is the 2D algorithm on a polygon of a quarter of a degree: smooth, 0.24 um off the circle; polygons' vertices lie on it;
-//   - the 2-degree edge is a blade whose edge is sharp: contact stays on it, so that the tactor moves as fast as the finger, backwards;
-//   - "front end": a sweep begins from rest on one side; where the tactor has come two thirds of its travel from there it freezes until the finger is
-//     10 mm up, so that the onset is felt and the end never;
+// Thresholds are counted in segments of the published arc
+// (tasks/lab/study/arc_segments.h). What the text leaves open is ours:
+//   - the exact arc is the 2D algorithm on a polygon of a quarter of a degree: smooth, 0.24 um off
+//     the circle; polygons' vertices lie on it;
+//   - the 2-degree edge is a blade whose edge is sharp: contact stays on it, so that the
+//     tactor moves as fast as the finger, backwards;
+//   - "front end": a sweep begins from rest on one side; where the tactor has come two thirds of its travel from there
+//     it freezes until the finger is 10 mm up, so that the onset is felt and the end never;
 //   - in the two on the base cylinder the finger may roll, as people do; on the edge and in smoothness it doesn't;
 //   - staircases start well above the published thresholds; smoothness takes steps by ratios of the angle.
 #pragma once

@@ -69,7 +69,8 @@ void ArcTrial::startInterval(int) {
   state_.force_tracker = state_.tactile_tracker = {};
 }
 
-// Holds the place wanted, which the display's FIFO delays: so the place displayed freezes at the same place, that much later.
+// Holds the place wanted, which the display's FIFO delays: so the place displayed
+// freezes at the same place, that much later.
 void ArcTrial::freezeFrontEnd() {
   if (setup_.freeze_share >= 1) return;
   const double reach = shown().shown.largest_place, place = out_.tactile.place_L.x();

@@ -1,7 +1,9 @@
-// arc_trial: one trial of an experiment in the plane (tasks/lab/finger/finger_trial.h): a finger strokes one curve or two, one after the other.
+// arc_trial: one trial of an experiment in the plane (tasks/lab/finger/finger_trial.h): a finger
+// strokes one curve or two, one after the other.
 //
-// The set-up: an arm whose base frame D has x right, y up and z towards the operator (W: x right, y away, z up), the finger pointing away with its
-// pad down, strokes along it (fore-aft), a 1-DOF contact location display whose roller moves distally for contacts on the distal side.
+// The set-up: an arm whose base frame D has x right, y up and z towards the operator (W: x right, y away, z up), the
+// finger pointing away with its pad down, strokes along it (fore-aft), a 1-DOF contact location display whose roller
+// moves distally for contacts on the distal side.
 #pragma once
 #include <optional>
 #include <vector>
@@ -29,7 +31,8 @@ struct ArcTrialSetup {
   double path_radius = 0.12;    // of the circle about B's origin on which the fingertip's centre goes [m]
   double start_angle = -0.4;    // where on it the finger waits, from +z towards +y [rad]
   double stiffness = 1000;      // of the surface [N/m]
-  // Of the tactor's travel from the side where a sweep began; there it freezes until the finger is over 10 mm up. 1: never.
+  // Of the tactor's travel from the side where a sweep began; there it freezes
+  // until the finger is over 10 mm up. 1: never.
   double freeze_share = 1;
   std::vector<ArcInterval> intervals;  // one or two
   FingerTrialSetup asked;              // but for how many intervals

@@ -17,7 +17,8 @@ engine::WorldBuilder cylinderWorld(const CylinderAlignmentOptions& o, int& objec
   engine::WorldBuilder builder{engine::WorldOptions{}};
   if (!o.pivot) builder.addBody({"table", contact::HalfSpace{}, false, 0, {o.table_friction, o.table_friction, 0, 0}});
   const contact::CylinderWithFlat shape{o.radius, 0.5 * o.length, flatDistance(o)};
-  object = builder.addBody({"cylinder", shape, true, o.mass, {o.friction, o.dynamic_ratio * o.friction, 0, o.torsion_radius}});
+  object = builder.addBody(
+      {"cylinder", shape, true, o.mass, {o.friction, o.dynamic_ratio * o.friction, 0, o.torsion_radius}});
   if (o.pivot) {
     engine::JointModel joint;
     joint.a = object;
@@ -30,14 +31,18 @@ engine::WorldBuilder cylinderWorld(const CylinderAlignmentOptions& o, int& objec
 
 }  // namespace
 
-double flatDistance(const CylinderAlignmentOptions& options) { return options.radius * math::cos(options.flat_half_angle); }
+double flatDistance(const CylinderAlignmentOptions& options) {
+  return options.radius * math::cos(options.flat_half_angle);
+}
 
 void validate(const CylinderAlignmentOptions& o) {
   const RangeCheck check("cylinder-alignment", "cylinder_alignment");
   visitParameters(o, check);
   check("participants", o.participants, Parameter{"", {1, 1000, false, "The published study had 12."}});
-  check("start_max", o.start_max, Parameter{"", {o.start_min, 3.1416, false, "It is in radians, at least start_min; 3.1416 is usual."}});
-  if (o.conditions.empty()) throw ParameterError("conditions", "cylinder-alignment: conditions is empty. Give force, cld+force, or both.");
+  check("start_max", o.start_max,
+        Parameter{"", {o.start_min, 3.1416, false, "It is in radians, at least start_min; 3.1416 is usual."}});
+  if (o.conditions.empty())
+    throw ParameterError("conditions", "cylinder-alignment: conditions is empty. Give force, cld+force, or both.");
 }
 
 double wrapAngle(double angle) {
@@ -54,7 +59,8 @@ double flatAngle(const Pose& X_WB) {
 std::vector<double> startAngles(const CylinderAlignmentOptions& options, int count, std::uint64_t seed) {
   Random random(seed);
   std::vector<double> angles;
-  for (int i = 0; i < count; ++i) angles.push_back((i % 2 == 0 ? 1 : -1) * random.uniform(options.start_min, options.start_max));
+  for (int i = 0; i < count; ++i)
+    angles.push_back((i % 2 == 0 ? 1 : -1) * random.uniform(options.start_min, options.start_max));
   for (std::size_t i = angles.size(); i > 1; --i) std::swap(angles[i - 1], angles[random.below(i)]);
   return angles;
 }
@@ -68,7 +74,8 @@ HandScene makeCylinderScene(const CylinderAlignmentOptions& options, const Cylin
   std::vector<engine::BodyStart> starts;
   if (!options.pivot) starts.emplace_back();
   starts.push_back(start);
-  HandScene scene = makeHandScene(options.hand, world, starts, middle_W, options.radius, spec.condition == PickupCondition::kCldForce);
+  HandScene scene = makeHandScene(options.hand, world, starts, middle_W, options.radius,
+                                  spec.condition == PickupCondition::kCldForce);
   if (options.shading) {
     const auto felt = shadedCylinder(options.radius, 0.5 * options.length, flatDistance(options), *options.shading);
     grasp::feelAs(scene.model.grasp, object, contact::Mesh{felt});

@@ -1,10 +1,12 @@
-// cylinder_alignment: the protocol of "turn the cylinder so that its flat faces the monitor" (A. J. Doxon, dissertation, University of Utah,
-// 2014).
+// cylinder_alignment: the protocol of "turn the cylinder so that its flat faces the monitor" (A. J. Doxon,
+// dissertation, University of Utah, 2014).
 //
-// Index finger and thumb find the flat of an upright cylinder, without seeing it, and turn it, under two conditions: force only (tactors
-// parked) and contact location display + force. The cylinder stands on a damped vertical pivot, or free on a table.
+// Index finger and thumb find the flat of an upright cylinder, without seeing it, and turn it, under two
+// conditions: force only (tactors parked) and contact location display + force. The cylinder stands on a
+// damped vertical pivot, or free on a table.
 //
-//   theta   direction of the flat's outward normal about W's z axis [rad];   theta* = pi/2: towards the monitor, away from the operator (+y)
+//   theta   direction of the flat's outward normal about W's z axis [rad];   theta* = pi/2: towards
+//           the monitor, away from the operator (+y)
 //   start   theta - theta* = +- U[start_min, start_max]
 //   error   wrap(theta - theta*) when the participant answers; a time-out is censored data
 //
@@ -30,10 +32,11 @@ struct CylinderAlignmentOptions {
   double pivot_damping = 0.01;      // [N m s/rad], 0 .. 0.1
   double table_friction = 0.5;      // mu of the table under a free cylinder [-], 0 .. 5
   HandSetup hand;
-  std::optional<contact::SurfaceVariant> shading = contact::SurfaceVariant::smooth;  // as of the sphere (sphere_pickup.h)
-  double start_min = 0.7854, start_max = 3.1416;                                     // of |theta - theta*| [rad], 0 .. pi
-  double timeout = 120;                                                              // [s], 1 .. 600
-  int repetitions = 10;                                                              // per condition, 1 .. 1000
+  // as of the sphere (sphere_pickup.h)
+  std::optional<contact::SurfaceVariant> shading = contact::SurfaceVariant::smooth;
+  double start_min = 0.7854, start_max = 3.1416;  // of |theta - theta*| [rad], 0 .. pi
+  double timeout = 120;                           // [s], 1 .. 600
+  int repetitions = 10;                           // per condition, 1 .. 1000
   std::vector<PickupCondition> conditions{PickupCondition::kForce, PickupCondition::kCldForce};
   int participants = 1;  // 1 .. 1000
   std::uint64_t seed = 1;

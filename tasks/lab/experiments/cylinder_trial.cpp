@@ -5,7 +5,8 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kOnFlat = 0.9998;  // cosine, 1.1 degrees: the flat's normal is the contact's; on the round part none is so near for long
+// cosine, 1.1 degrees: the flat's normal is the contact's; on the round part none is so near for long
+constexpr double kOnFlat = 0.9998;
 
 TrialHead headOf(const CylinderTrialSpec& spec) {
   return {"cylinder-alignment", spec.trial, spec.participant, spec.index, nameOf(spec.condition), spec.training};
@@ -25,9 +26,14 @@ HandScene checkedScene(const CylinderAlignmentOptions& options, const CylinderTr
 }  // namespace
 
 CylinderTrial::CylinderTrial(const CylinderAlignmentOptions& options, const CylinderTrialSpec& spec, RecordSink& sink)
-    : HandTrial(checkedScene(options, spec), headOf(spec), sink), spec_(spec), rules_(rulesOf(options)), judge_(rules_) {}
+    : HandTrial(checkedScene(options, spec), headOf(spec), sink),
+      spec_(spec),
+      rules_(rulesOf(options)),
+      judge_(rules_) {}
 
-double CylinderTrial::angle() const { return flatAngle(engine::bodyPose(scene().model.grasp.world, state().grasp.world, scene().object)); }
+double CylinderTrial::angle() const {
+  return flatAngle(engine::bodyPose(scene().model.grasp.world, state().grasp.world, scene().object));
+}
 
 TrialVerdict CylinderTrial::judge(const HandIntent& intent, double time) {
   CylinderView view;

@@ -11,7 +11,9 @@ class CylinderTrial final : public HandTrial {
   // Throws InputError for options out of range.
   CylinderTrial(const CylinderAlignmentOptions& options, const CylinderTrialSpec& spec, RecordSink& sink);
 
-  const char* instruction() const override { return "Turn the cylinder until its flat faces the monitor; then press Enter"; }
+  const char* instruction() const override {
+    return "Turn the cylinder until its flat faces the monitor; then press Enter";
+  }
 
  private:
   TrialVerdict judge(const HandIntent& intent, double time) override;

@@ -12,7 +12,8 @@ namespace {
 std::array<double, 3> toArray(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 std::array<double, 2> toArray(const Vec2& v) { return {v.x(), v.y()}; }
 
-FingerRecord fingerRecord(const TickState& state, const TickScratch& scratch, const FingerInputs& inputs, std::size_t i) {
+FingerRecord fingerRecord(const TickState& state, const TickScratch& scratch, const FingerInputs& inputs,
+                          std::size_t i) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const grasp::FingerReport& report = scratch.fingers[i];
   const FingerOutputs& output = scratch.outputs[i];
@@ -28,7 +29,8 @@ FingerRecord fingerRecord(const TickState& state, const TickScratch& scratch, co
   record.place_shown_L = {kUnknown, kUnknown};
   if (inputs.tactile.valid && inputs.tactile.place_L) record.place_shown_L = toArray(*inputs.tactile.place_L);
   record.flags = (report.touching ? kTouching : 0) | (report.sliding ? kSliding : 0) |
-                 (state.mounts[i].gate.trip != devices::Trip::kNone ? kGateTripped : 0) | (output.tactile.parked ? kTactorParked : 0);
+                 (state.mounts[i].gate.trip != devices::Trip::kNone ? kGateTripped : 0) |
+                 (output.tactile.parked ? kTactorParked : 0);
   return record;
 }
 
@@ -41,7 +43,8 @@ InputRecord inputRecord(const HandScene& scene, const TickState& state, const Ti
   InputRecord record;
   record.phase = static_cast<std::uint32_t>(intent.phase);
   record.flags = (intent.wants_lift ? InputRecord::kWantsLift : 0u) | (intent.answers ? InputRecord::kAnswers : 0u);
-  for (std::size_t i = 0; i < record.fingers.size(); ++i) record.fingers[i] = fingerInputRecord(samples[i], scratch.outputs[i]);
+  for (std::size_t i = 0; i < record.fingers.size(); ++i)
+    record.fingers[i] = fingerInputRecord(samples[i], scratch.outputs[i]);
   const Pose X_WB = engine::bodyPose(scene.model.grasp.world, state.grasp.world, scene.object);
   record.p_WB = toArray(X_WB.p);
   record.q_WB = toArray(X_WB.q);
@@ -51,7 +54,8 @@ InputRecord inputRecord(const HandScene& scene, const TickState& state, const Ti
 
 HandIntent intentOf(const InputRecord& record) {
   HandIntent intent;
-  static_assert(columns::kLastPhase == kHandPhases - 1 && columns::kLastTrip == static_cast<double>(devices::Trip::kOperator));
+  static_assert(columns::kLastPhase == kHandPhases - 1 &&
+                columns::kLastTrip == static_cast<double>(devices::Trip::kOperator));
   intent.phase = static_cast<HandPhase>(record.phase);
   intent.wants_lift = (record.flags & InputRecord::kWantsLift) != 0;
   intent.answers = (record.flags & InputRecord::kAnswers) != 0;

@@ -1,4 +1,5 @@
-// hand_records: a tick of a manipulation task as a SampleRecord, and what it was given as an InputRecord, there and back.
+// hand_records: a tick of a manipulation task as a SampleRecord, and what it was
+// given as an InputRecord, there and back.
 #pragma once
 #include <vector>
 
@@ -12,7 +13,8 @@ namespace pincer::tasks {
 SampleRecord sampleRecord(const HandScene& scene, const TickState& state, const TickScratch& scratch,
                           const std::vector<FingerInputs>& samples);
 
-// The devices' samples, the hand's intents, and where they led; trial, tick, time, cut and status are left to the caller. Allocates nothing.
+// The devices' samples, the hand's intents, and where they led; trial, tick, time, cut and status
+// are left to the caller. Allocates nothing.
 InputRecord inputRecord(const HandScene& scene, const TickState& state, const TickScratch& scratch,
                         const std::vector<FingerInputs>& samples, const HandIntent& intent);
 // To the bit what inputRecord() was given.

@@ -47,7 +47,13 @@ grasp::FingerModel fingerModel(const HandSetup& setup, int finger) {
 }
 
 FingerCue fingerCue(const grasp::FingerModel& finger, const Pose& X_WD, const Vec3& home_W) {
-  return {X_WD.q, X_WD.p, home_W, finger.radius, finger.pad_normal_F, finger.distal_F, finger.pad_normal_F.cross(finger.distal_F)};
+  return {X_WD.q,
+          X_WD.p,
+          home_W,
+          finger.radius,
+          finger.pad_normal_F,
+          finger.distal_F,
+          finger.pad_normal_F.cross(finger.distal_F)};
 }
 
 void requireFacing(const HandScene& scene, std::size_t i, const ArmBase& base) {
@@ -56,7 +62,8 @@ void requireFacing(const HandScene& scene, std::size_t i, const ArmBase& base) {
   const double off = math::acos(std::clamp(ahead_W.dot(there_W), -1.0, 1.0));
   if (off <= kFacing) return;
   throw InputError(
-      fmt::format("calibration: the {} finger's arm doesn't face the other: with base_x, base_y, base_z = {:g}, {:g}, {:g} m and base_turn "
+      fmt::format("calibration: the {} finger's arm doesn't face the other: with base_x, base_y, base_z = {:g}, {:g}, "
+                  "{:g} m and base_turn "
                   "= {:g} rad it "
                   "looks {:.0f} degrees past it. At most {:.0f}: measure the bases again (docs/devices/setup.md).",
                   i == 0 ? "index" : "thumb", base.offset_W.x(), base.offset_W.y(), base.offset_W.z(), base.turn,
@@ -65,8 +72,8 @@ void requireFacing(const HandScene& scene, std::size_t i, const ArmBase& base) {
 
 }  // namespace
 
-HandScene makeHandScene(const HandSetup& setup, engine::WorldBuilder world, std::vector<engine::BodyStart> starts, const Vec3& place_W,
-                        double half_width, bool display_tactile) {
+HandScene makeHandScene(const HandSetup& setup, engine::WorldBuilder world, std::vector<engine::BodyStart> starts,
+                        const Vec3& place_W, double half_width, bool display_tactile) {
   HandScene scene;
   std::vector<grasp::FingerModel> fingers;
   const double beside = half_width + setup.finger_radius + kHomeBeside;

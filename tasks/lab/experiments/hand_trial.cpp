@@ -11,20 +11,25 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kAtRest = 1e-3;         // the object lies still under this speed [m/s]
-constexpr double kPrepareLimit = 10;     // the start tone comes then at the latest [s]
-constexpr double kGoHomeLimit = 5;       // [s]
-constexpr double kHomeRadius = 0.015;    // a fingertip this near to its start is there [m]
-constexpr double kLeadStiffness = 20;    // of the spring that leads home [N/m]
-constexpr double kLeadForce = 0.5;       // its strongest pull [N]
-constexpr double kLeadRise = 0.5;        // in which it comes [s]
-constexpr std::size_t kEvents = 4096;    // more than any trial of 60 s has; further ones are dropped rather than allocated in the tick
+constexpr double kAtRest = 1e-3;       // the object lies still under this speed [m/s]
+constexpr double kPrepareLimit = 10;   // the start tone comes then at the latest [s]
+constexpr double kGoHomeLimit = 5;     // [s]
+constexpr double kHomeRadius = 0.015;  // a fingertip this near to its start is there [m]
+constexpr double kLeadStiffness = 20;  // of the spring that leads home [N/m]
+constexpr double kLeadForce = 0.5;     // its strongest pull [N]
+constexpr double kLeadRise = 0.5;      // in which it comes [s]
+// more than any trial of 60 s has; further ones are dropped rather than allocated in the tick
+constexpr std::size_t kEvents = 4096;
 constexpr std::size_t kReadings = 1024;  // likewise
 
 }  // namespace
 
 HandTrial::HandTrial(HandScene scene, TrialHead head, RecordSink& sink)
-    : head_(std::move(head)), sink_(sink), scene_(std::move(scene)), state_(makeHandState(scene_)), scratch_(scene_.model) {
+    : head_(std::move(head)),
+      sink_(sink),
+      scene_(std::move(scene)),
+      state_(makeHandState(scene_)),
+      scratch_(scene_.model) {
   events_.reserve(kEvents);
   readings_.reserve(kReadings);
 }
@@ -53,7 +58,8 @@ bool HandTrial::step(const std::vector<FingerInputs>& samples, const HandIntent&
 void HandTrial::hear(const HandIntent& intent) {
   if (intent.phase != phase_) note("phase", nameOf(intent.phase));
   phase_ = intent.phase;
-  if (intent.reading && readings_.size() < readings_.capacity()) readings_.push_back({last_, *intent.reading, truthOf(*intent.reading)});
+  if (intent.reading && readings_.size() < readings_.capacity())
+    readings_.push_back({last_, *intent.reading, truthOf(*intent.reading)});
 }
 
 engine::StepReport HandTrial::timedTick(const std::vector<FingerInputs>& samples, double now) {
@@ -148,9 +154,12 @@ Vec3 HandTrial::placeTruth() const {
   return {0, offset_W.y(), offset_W.z()};  // the pinch is along x
 }
 
-Vec3 HandTrial::gripTruth() const { return {0.5 * (scratch_.fingers[0].normal_force + scratch_.fingers[1].normal_force), 0, 0}; }
+Vec3 HandTrial::gripTruth() const {
+  return {0.5 * (scratch_.fingers[0].normal_force + scratch_.fingers[1].normal_force), 0, 0};
+}
 
-void HandTrial::record(const std::vector<FingerInputs>& samples, const HandIntent& intent, double now, std::uint32_t status) {
+void HandTrial::record(const std::vector<FingerInputs>& samples, const HandIntent& intent, double now,
+                       std::uint32_t status) {
   if (sink_.wantsInputs()) {
     InputRecord input = inputRecord(scene_, state_, scratch_, samples, intent);
     input.trial = head_.trial;
@@ -226,7 +235,9 @@ void HandTrial::trip(devices::Trip cause) {
 std::string HandTrial::fault() const {
   if (trip_ == devices::Trip::kNone) return "";
   const std::string why = devices::describe(scene_.model.mounts[tripped_].gate, state_.mounts[tripped_].gate);
-  return trip_ == devices::Trip::kMissedDeadline ? why : fmt::format("{}: {}", scene_.model.grasp.fingers[tripped_].name, why);
+  return trip_ == devices::Trip::kMissedDeadline
+             ? why
+             : fmt::format("{}: {}", scene_.model.grasp.fingers[tripped_].name, why);
 }
 
 void HandTrial::finish() {
@@ -236,7 +247,8 @@ void HandTrial::finish() {
   }
   const auto triple = [](const Vec3& v) { return std::array<double, 3>{v.x(), v.y(), v.z()}; };
   for (const Reading& r : readings_) {
-    sink_.reading({head_.trial, r.time, r.said.kind, triple(r.truth), triple(r.said.percept), triple(r.said.estimate), r.said.decision});
+    sink_.reading({head_.trial, r.time, r.said.kind, triple(r.truth), triple(r.said.percept), triple(r.said.estimate),
+                   r.said.decision});
   }
   sink_.trial(row());
 }
@@ -262,7 +274,8 @@ std::string HandTrial::phaseTimes() const {
   std::string json;
   for (int i = 0; i < kHandPhases; ++i) {
     const double time = phase_times_[static_cast<std::size_t>(i)];
-    if (time > 0) json += fmt::format("{}\"{}\": {:.3f}", json.empty() ? "" : ", ", nameOf(static_cast<HandPhase>(i)), time);
+    if (time > 0)
+      json += fmt::format("{}\"{}\": {:.3f}", json.empty() ? "" : ", ", nameOf(static_cast<HandPhase>(i)), time);
   }
   return "{" + json + "}";
 }

@@ -1,5 +1,6 @@
-// hand_trial: one trial of a manipulation task, tick by tick; the same code for simulated and real devices, in virtual and in real time.
-// Whoever owns the clock calls step() once per tick with the latest samples, and sends outputs() to the devices.
+// hand_trial: one trial of a manipulation task, tick by tick; the same code for simulated and real
+// devices, in virtual and in real time. Whoever owns the clock calls step() once per tick with the latest
+// samples, and sends outputs() to the devices.
 //
 //   prepare   gates ramp up, the object comes to rest; then the start tone
 //   run       until the task's judge ends it, or a fault
@@ -38,8 +39,8 @@ class HandTrial {
  public:
   virtual ~HandTrial() = default;
 
-  // One tick at `now` [s on the devices' clock]. `intent` is what the participant said last (a person: what the operator or a rule says).
-  // Returns false when the trial is over.
+  // One tick at `now` [s on the devices' clock]. `intent` is what the participant said last (a person: what the
+  // operator or a rule says). Returns false when the trial is over.
   bool step(const std::vector<FingerInputs>& samples, const HandIntent& intent, double now);
 
   const std::vector<FingerOutputs>& outputs() const { return scratch_.outputs; }
@@ -59,7 +60,8 @@ class HandTrial {
   void fitTo(int finger, const devices::ArmCapabilities& arm);
   // So old may a sample be [s]. Before the first step.
   void trustSamples(double oldest);
-  // The arms stand so far off their places in the scene. Throws InputError unless they face each other. Before the first step.
+  // The arms stand so far off their places in the scene. Throws InputError unless
+  // they face each other. Before the first step.
   void standArms(const std::array<ArmBase, kHandFingers>& bases);
   // Hands all of this to a sink that wants the trial's inputs. Before the first step.
   void begin();

@@ -41,7 +41,8 @@ class HandsCycle final : public ServoCycle {
 struct TrialHost {
   std::function<std::unique_ptr<Hands>(HandTrial& trial)> hands;
   std::function<ServoReport(HandsCycle& cycle, std::size_t trial, std::size_t trials)> serve;
-  // Asks the operator whether forces may come on: before the first trial, and before the one after a fault. False ends the session.
+  // Asks the operator whether forces may come on: before the first trial, and before the
+  // one after a fault. False ends the session.
   std::function<bool(const std::string& why)> arm;
   // Of people: a page to read, a question to answer; false or absent: the person has left.
   std::function<bool(const StudyPage& page)> show;

@@ -1,8 +1,9 @@
-// haply_wearer: a simulated participant who holds the knobs of the emulator's two Inverse3 (devices/emulate) and picks up the sphere: feels
-// only what they render, and pulls at them.
+// haply_wearer: a simulated participant who holds the knobs of the emulator's two Inverse3 (devices/emulate) and picks
+// up the sphere: feels only what they render, and pulls at them.
 //
-// The service has no tones. So the hand begins when a session arms, which it feels as the test force of devices/haply on both knobs, and
-// starts two seconds later, when the session's forces have come up; it notices a trial's end by the next one's beginning.
+// The service has no tones. So the hand begins when a session arms, which it feels as the test force of
+// devices/haply on both knobs, and starts two seconds later, when the session's forces have come up; it notices a
+// trial's end by the next one's beginning.
 #pragma once
 #include "pincer/devices/emulate/haply_service.h"
 #include "pincer/tasks/lab/participants/scripted_pickup.h"

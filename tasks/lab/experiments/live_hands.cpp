@@ -51,7 +51,8 @@ void LiveHands::apply(const std::vector<FingerOutputs>& outputs, Cue cue, double
     devices_.arm(i).commandForce(output.f_D);
     if (devices::TactileDisplay* display = devices_.display(i)) display->command(output.tactile);
     // No force, no pressure: a gate that tripped ends both.
-    const double normal_force = output.f_D.isZero(0) ? 0 : trial_.scratch().fingers[static_cast<std::size_t>(i)].normal_force;
+    const double normal_force =
+        output.f_D.isZero(0) ? 0 : trial_.scratch().fingers[static_cast<std::size_t>(i)].normal_force;
     if (devices::PressureDisplay* pressure = devices_.pressure(i)) pressure->press(normal_force);
   }
 }
@@ -59,8 +60,8 @@ void LiveHands::apply(const std::vector<FingerOutputs>& outputs, Cue cue, double
 void LiveHands::readIntent() {
   const auto& fingers = trial_.scratch().fingers;
   const int object = trial_.scene().object;
-  intent_.wants_lift =
-      std::all_of(fingers.begin(), fingers.end(), [&](const grasp::FingerReport& f) { return f.touching && f.body == object; });
+  intent_.wants_lift = std::all_of(fingers.begin(), fingers.end(),
+                                   [&](const grasp::FingerReport& f) { return f.touching && f.body == object; });
   intent_.answers = keys_ && keys_->take() == devices::kKeyEnter;
   intent_.phase = intent_.wants_lift ? HandPhase::kSqueeze : HandPhase::kReach;
 }

@@ -13,10 +13,11 @@ namespace pincer::tasks {
 
 class LiveHands final : public Hands {
  public:
-  // Both must outlive it. Arms the devices, only after the operator said so, puts their bases where the calibration says, and has the trial keep
-  // to what the arms can do and their user's fingers passive (grasp/passivity). `oldest_sample` is still trusted [s].
-  // `keys`: Enter answers; null: nobody answers.
-  LiveHands(HandTrial& trial, HandDevices& devices, double oldest_sample = devices::GateLimits{}.watchdog_time, AnswerBox* keys = nullptr);
+  // Both must outlive it. Arms the devices, only after the operator said so, puts their bases where the calibration
+  // says, and has the trial keep to what the arms can do and their user's fingers passive (grasp/passivity).
+  // `oldest_sample` is still trusted [s]. `keys`: Enter answers; null: nobody answers.
+  LiveHands(HandTrial& trial, HandDevices& devices, double oldest_sample = devices::GateLimits{}.watchdog_time,
+            AnswerBox* keys = nullptr);
   ~LiveHands() override;  // zero force
   LiveHands(const LiveHands&) = delete;
   LiveHands& operator=(const LiveHands&) = delete;

@@ -12,10 +12,10 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kReference = 4e-3;       // turn of the cylinder's polygon from segment to segment [rad]: 2e-6 of its radius
-constexpr double kTactorReach = 8e-3;     // either way [m]
-constexpr double kFarthestCentre = 0.05;  // of a cylinder from where it began [m]
-constexpr double kArcBeyond = 0.3;        // of the arc over what the tactor can show [rad]
+constexpr double kReference = 4e-3;  // turn of the cylinder's polygon from segment to segment [rad]: 2e-6 of its radius
+constexpr double kTactorReach = 8e-3;                                 // either way [m]
+constexpr double kFarthestCentre = 0.05;                              // of a cylinder from where it began [m]
+constexpr double kArcBeyond = 0.3;                                    // of the arc over what the tactor can show [rad]
 constexpr std::uint64_t kCylinder = 1, kFeeling = 2, kListOrder = 3;  // parts of seeds
 
 std::string placeName(int place) { return fmt::format("place {}", place + 1); }
@@ -27,7 +27,8 @@ double startPlace(double target, double least, Random& random) {
   return target + side * random.uniform(least, room);
 }
 
-// The cylinder `radius` whose top is as high as the first one's, under a finger at `finger_y` that touches it with `place`.
+// The cylinder `radius` whose top is as high as the first one's, under a finger at
+// `finger_y` that touches it with `place`.
 PlacePath secondPath(double finger_y, double base_radius, double radius, double place, double finger_radius) {
   PlacePath path;
   path.radius = radius + finger_radius;
@@ -50,7 +51,8 @@ void validate(const LocalisationStudy& s) {
   visitParameters(s.session, RangeCheck("repeated-localisation: session", "session"));
   validate(s.session, "repeated-localisation");
   requireOneBlock(s.session, "repeated-localisation", false);
-  check("spacing", s.spacing, Parameter{"", {0, 2 * kTactorReach / (s.places - 1), true, "All places lie within 0.016 m."}});
+  check("spacing", s.spacing,
+        Parameter{"", {0, 2 * kTactorReach / (s.places - 1), true, "All places lie within 0.016 m."}});
   check("radius_min", s.radius_min, Parameter{"", {0.02, s.radius_max, false, kAsPublished}});
 }
 
@@ -75,7 +77,8 @@ std::vector<StudyRun> LocalisationExperiment::runs() const {
 }
 
 std::optional<ResponseRecord> LocalisationExperiment::present(const StudyTrial& trial, StudySink& sink,
-                                                              const std::atomic<bool>& interrupted, ServoReport& served) {
+                                                              const std::atomic<bool>& interrupted,
+                                                              ServoReport& served) {
   const double target = trial.stimulus.level;
   const PlaceCues cues = cuesOf(trial);
   const ArcTrialSetup setup = setupOf(trial, cues);
@@ -113,15 +116,18 @@ ArcTrialSetup LocalisationExperiment::setupOf(const StudyTrial& trial, const Pla
   const Quat across = quatFromRotationVector(0.5 * std::numbers::pi * Vec3::UnitY());
   for (const PlacePath& path : cues.paths) {
     const double radius = path.radius - study_.finger_radius;
-    const auto curve = std::make_shared<const contact::Curve>(movedArc(radius, sweep, path.centre_W), contact::SurfaceVariant::smooth);
-    setup.intervals.push_back({{curve, curve, kTactorReach}, {}, {contact::Cylinder{radius, kHalfWidth}, {across, path.centre_W}}});
+    const auto curve =
+        std::make_shared<const contact::Curve>(movedArc(radius, sweep, path.centre_W), contact::SurfaceVariant::smooth);
+    setup.intervals.push_back(
+        {{curve, curve, kTactorReach}, {}, {contact::Cylinder{radius, kHalfWidth}, {across, path.centre_W}}});
   }
   return setup;
 }
 
 StudyPage LocalisationExperiment::introduction(const StudyRun&) const {
   return {"Where does it feel the same?",
-          {"The screen shows where the tactor touches your fingerpad, and a ring. Touch the surface and move fore and aft until the tactor "
+          {"The screen shows where the tactor touches your fingerpad, and a ring. Touch the surface and move fore and "
+           "aft until the tactor "
            "is in",
            "the ring. Hold still, keep the place in mind and press Enter. Then raise the finger: the surface changes.",
            "After the tone touch again and move until it feels the same on your fingerpad. Then press Enter."}};

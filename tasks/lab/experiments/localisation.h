@@ -1,13 +1,15 @@
 // localisation: how well is a touched place found again? A matching task.
 //
-//   1  a screen shows the tactor and a target; the finger rolls over a cylinder until the tactor is within 0.25 mm, holds still, memorises; Enter
-//   2  the finger is raised; the cylinder's radius and fore-aft place change, so that the tactor has at least 4 mm to travel and the cylinder's centre
-//      stays within 50 mm of where it began
+//   1  a screen shows the tactor and a target; the finger rolls over a cylinder until the tactor is
+//      within 0.25 mm, holds still, memorises; Enter
+//   2  the finger is raised; the cylinder's radius and fore-aft place change, so that the tactor has at least 4 mm to
+//      travel and the cylinder's centre stays within 50 mm of where it began
 //   3  the finger rolls until it feels the same; Enter.   error = match - reference, of the true tactor
 //
-// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 3: 5 places 2.8 mm apart, 10 times each, cylinders of 50 to 140 mm, first
-// one of 95, a finger of 13 mm; mean absolute error 1.3 mm. `answer` counts from the nominal place: nominal + error. The distributions of radius and
-// place are ours, and that the finger, which lands on the new cylinder, is led along it.
+// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 3: 5 places 2.8 mm apart, 10 times
+// each, cylinders of 50 to 140 mm, first one of 95, a finger of 13 mm; mean absolute error 1.3 mm. `answer` counts
+// from the nominal place: nominal + error. The distributions of radius and place are ours, and that the finger,
+// which lands on the new cylinder, is led along it.
 #pragma once
 #include "pincer/tasks/lab/experiments/arc_trial.h"
 #include "pincer/tasks/lab/experiments/study.h"

@@ -8,7 +8,9 @@ namespace pincer::tasks {
 
 std::string studyFile(const ManipulationStudy& study) { return studyText(study); }
 
-ManipulationStudy parseStudyFile(std::string_view text, const std::string& name) { return studyOfJson(parseJson(text, name)); }
+ManipulationStudy parseStudyFile(std::string_view text, const std::string& name) {
+  return studyOfJson(parseJson(text, name));
+}
 
 ManipulationStudy studyOfJson(const JsonValue& file) {
   ManipulationStudy study;

@@ -1,5 +1,6 @@
-// manipulation_file: a manipulation study as a JSON file (comments allowed): every parameter of the protocol and of the simulated participants. What
-// a file leaves out has the published design's value, or ours where that is open; unknown keys are errors with line and a did-you-mean.
+// manipulation_file: a manipulation study as a JSON file (comments allowed): every parameter of the protocol and of the
+// simulated participants. What a file leaves out has the published design's value, or ours where that is open; unknown
+// keys are errors with line and a did-you-mean.
 //
 // The session keeps this text, so that a study can be resumed and replayed.
 #pragma once

@@ -49,7 +49,8 @@ class TrialList {
     }
   }
 
-  void addPickups(const std::vector<PickupTrialSpec>& all, std::int64_t person, PickupCondition condition, int most, bool training) {
+  void addPickups(const std::vector<PickupTrialSpec>& all, std::int64_t person, PickupCondition condition, int most,
+                  bool training) {
     int added = 0;
     for (const PickupTrialSpec& spec : all) {
       if (spec.participant != person || spec.condition != condition || added == most) continue;
@@ -65,7 +66,8 @@ class TrialList {
 
   void addAlignments(std::int64_t person, PickupCondition condition, int count, bool training) {
     const std::uint64_t person_seed = seedFor(seedFor(study_.seed, static_cast<std::uint64_t>(person)), kAlignmentSeed);
-    const std::uint64_t block_seed = seedFor(person_seed, 2 * static_cast<std::uint64_t>(condition) + (training ? 1 : 0));
+    const std::uint64_t block_seed =
+        seedFor(person_seed, 2 * static_cast<std::uint64_t>(condition) + (training ? 1 : 0));
     const std::vector<double> starts = startAngles(study_.alignment, count, block_seed);
     for (std::size_t k = 0; k < starts.size(); ++k) {
       ManipulationTrial trial;
@@ -92,7 +94,8 @@ void validate(const ManipulationStudy& study) {
   visitParameters(study.session, RangeCheck("study: session", "session"));
   validate(study.session, "study");
   requireOneBlock(study.session, "study", true);
-  if (study.tasks.empty()) throw ParameterError("tasks", "study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
+  if (study.tasks.empty())
+    throw ParameterError("tasks", "study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
   validate(pickupOf(study, false));
   CylinderAlignmentOptions alignment = study.alignment;
   alignment.conditions = study.conditions;
@@ -113,8 +116,8 @@ std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study
   return TrialList(study).take();
 }
 
-std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object, const ManipulationTrial& trial,
-                                     RecordSink& sink) {
+std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object,
+                                     const ManipulationTrial& trial, RecordSink& sink) {
   std::unique_ptr<HandTrial> made;
   if (trial.task == HandTask::kPickup) {
     made = std::make_unique<PickupTrial>(study.pickup, object, trial.pickup, sink);
@@ -135,7 +138,8 @@ namespace {
 std::string partName(const ManipulationTrial& spec) {
   const bool training = spec.task == HandTask::kPickup ? spec.pickup.training : spec.alignment.training;
   return fmt::format("{}, {}{}", spec.task == HandTask::kPickup ? "sphere pickup" : "cylinder alignment",
-                     spec.condition() == PickupCondition::kForce ? "force only" : "display and force", training ? ", training" : "");
+                     spec.condition() == PickupCondition::kForce ? "force only" : "display and force",
+                     training ? ", training" : "");
 }
 
 // The text that a person reads before a part.
@@ -143,7 +147,8 @@ StudyPage partPage(const ManipulationStudy& study, const ManipulationTrial& spec
   StudyPage page{partName(spec), study.session.instructions};
   if (page.lines.empty()) {
     if (spec.task == HandTask::kPickup)
-      page.lines = {"Pinch the sphere between index finger and thumb, lift it by 50 mm and hold it there for a second."};
+      page.lines = {
+          "Pinch the sphere between index finger and thumb, lift it by 50 mm and hold it there for a second."};
     else
       page.lines = {"Find the flat of the cylinder, then turn the cylinder so that the flat faces the monitor.",
                     "Enter says that it does."};
@@ -158,8 +163,9 @@ struct DoneTrial {
   ServoReport servo;
   std::string fault;
 };
-DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const ManipulationTrial& spec, const ServoOptions& servo,
-                   const std::atomic<bool>& interrupted, const StudyHooks& hooks, const TrialProgress& at) {
+DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const ManipulationTrial& spec,
+                   const ServoOptions& servo, const std::atomic<bool>& interrupted, const StudyHooks& hooks,
+                   const TrialProgress& at) {
   const std::unique_ptr<Participant> participant = makeParticipant(study, spec);
   const std::unique_ptr<Hands> hands =
       hooks.host.hands ? hooks.host.hands(trial) : std::make_unique<SimulatedHands>(trial.scene(), *participant);
@@ -177,7 +183,8 @@ DoneTrial runTrial(const ManipulationStudy& study, HandTrial& trial, const Manip
 std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOptions& servo, RecordSink& sink,
                                  const std::atomic<bool>& interrupted, const StudyHooks& hooks) {
   auto trials = manipulationTrials(study);
-  if (hooks.host.person) std::erase_if(trials, [&](const ManipulationTrial& t) { return t.participant() != *hooks.host.person; });
+  if (hooks.host.person)
+    std::erase_if(trials, [&](const ManipulationTrial& t) { return t.participant() != *hooks.host.person; });
   const PickupObject object = makePickupObject(study.pickup);
   const auto report = [&](std::size_t done) {
     if (hooks.progress) hooks.progress({done, trials.size()});

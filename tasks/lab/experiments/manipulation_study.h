@@ -1,8 +1,10 @@
-// manipulation_study: sphere pickup and cylinder alignment as one study (A. J. Doxon, dissertation, University of Utah, 2014).
+// manipulation_study: sphere pickup and cylinder alignment as one study (A. J. Doxon,
+// dissertation, University of Utah, 2014).
 //
-// 12 participants; both tasks in one condition, then both in the other; every other participant begins with the second condition. Training
-// before each task in each condition. Every trial's seed follows from the study's, the participant's, the condition and the place in it, so
-// that any trial can be done again alone. How many trials of training there are, and which task comes first, is ours.
+// 12 participants; both tasks in one condition, then both in the other; every other participant begins with the second
+// condition. Training before each task in each condition. Every trial's seed follows from the study's, the
+// participant's, the condition and the place in it, so that any trial can be done again alone. How many trials of
+// training there are, and which task comes first, is ours.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -59,8 +61,8 @@ struct ManipulationTrial {
 std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study);
 
 // The trial, not begun. `object`: what is picked up (makePickupObject).
-std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object, const ManipulationTrial& trial,
-                                     RecordSink& sink);
+std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object,
+                                     const ManipulationTrial& trial, RecordSink& sink);
 std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, const ManipulationTrial& trial);
 
 struct TrialProgress {
@@ -74,8 +76,9 @@ struct StudyHooks {
   TrialHost host = {};                                 // who watches, and whose hands they are
 };
 
-// Every trial, with simulated participants unless `hooks.host` brings other hands. An interrupted trial leaves no row. Returns the number of
-// trials finished, those of `hooks.finished` included. Throws InputError for bad options or a bad object.
+// Every trial, with simulated participants unless `hooks.host` brings other hands. An interrupted trial
+// leaves no row. Returns the number of trials finished, those of `hooks.finished` included. Throws
+// InputError for bad options or a bad object.
 std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOptions& servo, RecordSink& sink,
                                  const std::atomic<bool>& interrupted, const StudyHooks& hooks = {});
 

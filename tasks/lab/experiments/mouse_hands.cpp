@@ -30,7 +30,8 @@ void MouseHands::advanceTo(double now) {
 }
 
 const std::vector<FingerInputs>& MouseHands::sample() {
-  for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i] = {hand_.arm(static_cast<int>(i)).sample(), displays_[i].sample()};
+  for (std::size_t i = 0; i < samples_.size(); ++i)
+    samples_[i] = {hand_.arm(static_cast<int>(i)).sample(), displays_[i].sample()};
   intent_.wants_lift = hand_.squeezing();
   intent_.answers = keys_ && keys_->take() == devices::kKeyEnter;
   intent_.phase = intent_.wants_lift ? HandPhase::kSqueeze : HandPhase::kReach;

@@ -1,4 +1,5 @@
-// mouse_hands: two fingers on a mouse, with simulated contact location displays, in a trial. At the end of a trial they open and go home.
+// mouse_hands: two fingers on a mouse, with simulated contact location displays, in a trial. At
+// the end of a trial they open and go home.
 #pragma once
 #include <vector>
 

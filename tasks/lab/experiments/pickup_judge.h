@@ -1,21 +1,25 @@
 // pickup_judge: the one who sees the world, counts, and says when a trial is over.
 //
-//   squeeze  both normal forces exceed 0.2 N while the participant means to lift. It is the same squeeze until that intent ends, or a finger
-//            has carried less than half of it for 0.1 s: one squeeze per attempt, however the forces ring
-//   lift     the object's bottom leaves the dish; it is the same lift until it is back. A perfect trial has 1, like its squeezes
+//   squeeze  both normal forces exceed 0.2 N while the participant means to lift. It is the same
+//            squeeze until that intent ends, or a finger has carried less than half of it for 0.1 s:
+//            one squeeze per attempt, however the forces ring
+//   lift     the object's bottom leaves the dish; it is the same lift until it is back.
+//            A perfect trial has 1, like its squeezes
 //   try_5mm  the bottom clears 5 mm, once per lift
-//   slip     a loaded finger that had stuck begins to slide, and slides further than 0.2 mm before it has stuck again for 20 ms. (Without that
-//            distance one would count micro-slips: a grip near the limit of friction or torsion creeps at every step of an encoder)
+//   slip     a loaded finger that had stuck begins to slide, and slides further than 0.2 mm before it has stuck again
+//            for 20 ms. (Without that distance one would count micro-slips: a grip near the limit of friction or
+//            torsion creeps at every step of an encoder)
 //   drop     held over 5 mm, then no finger touches the object before it is back on the dish
-//   failure  a squeeze has ended without success: "not lifted" (the bottom never left the dish), "slipped" (never cleared 5 mm), "dropped",
-//            or "squeezed out" (the object went aside by more than 5 mm, across the pinch)
+//   failure  a squeeze has ended without success: "not lifted" (the bottom never left the dish), "slipped" (never
+//            cleared 5 mm), "dropped", or "squeezed out" (the object went aside by more than 5 mm, across the pinch)
 //   success  the bottom stays over 50 mm for 1 s;   timeout: 60 s without (censored data)
 //
 //   clearance  gap between the object and the dish [m]: the height of the bottom, for a sphere lifted straight up
-//   offset at the squeeze  distance of the object's centre of mass from the line through the two contacts [m]; 0 for an antipodal pinch of a
-//                          sphere
-// Definitions of squeeze, lift, try and success: design of the tasks, but that there lifts and tries count when the object is down again, so
-// that a perfect trial would have none and a dropped one as many as a held one; the rules' other figures are ours.
+//   offset at the squeeze  distance of the object's centre of mass from the line through the two contacts
+//                          [m]; 0 for an antipodal pinch of a sphere
+// Definitions of squeeze, lift, try and success: design of the tasks, but that there lifts and tries count
+// when the object is down again, so that a perfect trial would have none and a dropped one as many as a
+// held one; the rules' other figures are ours.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -60,8 +64,9 @@ struct PickupView {
 struct PickupCounts {
   std::int64_t squeezes = 0, lifts = 0, tries_5mm = 0, slips = 0, drops = 0, failures = 0;
   const char* last_failure = "";
-  double peak_grip = 0;                                                 // [N]
-  double held_grip = std::numeric_limits<double>::quiet_NaN();          // mean grip while over the success height, at the success [N]
+  double peak_grip = 0;  // [N]
+  // mean grip while over the success height, at the success [N]
+  double held_grip = std::numeric_limits<double>::quiet_NaN();
   double offset_at_squeeze = std::numeric_limits<double>::quiet_NaN();  // at the last squeeze [m]
 };
 

@@ -21,8 +21,8 @@ constexpr double kSmallest = 0.005, kLargest = 0.200;  // dimension of an object
 constexpr double kWidestGrip = 0.100;                  // of thumb and index finger, without a stretch [m]
 constexpr double kSettleTime = 20;                     // [s]
 constexpr double kDampingTime = 0.1;                   // of the settling motion [s]
-constexpr double kRestTime = 0.5;                      // an object rests whose points have moved so little in that time [s]
-constexpr double kRestDistance = 1e-3;                 // [m]
+constexpr double kRestTime = 0.5;       // an object rests whose points have moved so little in that time [s]
+constexpr double kRestDistance = 1e-3;  // [m]
 
 double largestDimension(const contact::TriangleMesh& mesh) {
   const contact::MeshReport report = contact::inspect(mesh);
@@ -31,7 +31,8 @@ double largestDimension(const contact::TriangleMesh& mesh) {
 
 void scaleTo(double size, contact::TriangleMesh& mesh) {
   const double largest = largestDimension(mesh);
-  if (!(largest > 0)) throw InputError(fmt::format("{}: all its points coincide: it has no size. Export it again.", mesh.source));
+  if (!(largest > 0))
+    throw InputError(fmt::format("{}: all its points coincide: it has no size. Export it again.", mesh.source));
   for (Vec3& vertex : mesh.vertices) vertex *= size / largest;
 }
 
@@ -45,7 +46,8 @@ void requireHandSize(const contact::TriangleMesh& mesh, const std::string& units
 }
 
 contact::TriangleMesh readAtHandSize(const ObjectFile& file) {
-  contact::TriangleMesh mesh = contact::readMesh(file.path, {.metres_per_unit = file.size ? 1 : contact::metresPerUnit(file.units)});
+  contact::TriangleMesh mesh =
+      contact::readMesh(file.path, {.metres_per_unit = file.size ? 1 : contact::metresPerUnit(file.units)});
   file.size ? scaleTo(*file.size, mesh) : requireHandSize(mesh, file.units);
   return mesh;
 }
@@ -75,12 +77,15 @@ double heightAboveDish(const contact::TriangleMesh& mesh, double dish_radius) {
 }
 
 // How far a point at most `reach` from the centre may have moved from one pose to the other.
-double movement(const Pose& from, const Pose& to, double reach) { return (to.p - from.p).norm() + reach * angleBetween(from.q, to.q); }
+double movement(const Pose& from, const Pose& to, double reach) {
+  return (to.p - from.p).norm() + reach * angleBetween(from.q, to.q);
+}
 
 Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, double height) {
   const double mu = options.frictions.front();
   const engine::WorldModel model = pickupWorld(options, shape, mu, options.dynamic_ratio * mu).build();
-  engine::WorldState state = engine::makeState(model, {{}, {{Quat::Identity(), Vec3(0, 0, height)}, Vec3::Zero(), Vec3::Zero()}}, {});
+  engine::WorldState state =
+      engine::makeState(model, {{}, {{Quat::Identity(), Vec3(0, 0, height)}, Vec3::Zero(), Vec3::Zero()}}, {});
   const engine::ScratchHandle scratch = engine::makeScratch(model);
   engine::BodyState& body = state.bodies[kObjectBody];
   const double keep = math::exp(-model.options.h / kDampingTime);
@@ -95,8 +100,9 @@ Pose settle(const SpherePickupOptions& options, const contact::Shape& shape, dou
     last = pose;
     next += kRestTime;
   }
-  throw InputError(fmt::format("{}: the object finds no rest in the dish within {} s. Check that it is closed and of even density.",
-                               options.object->path, kSettleTime));
+  throw InputError(
+      fmt::format("{}: the object finds no rest in the dish within {} s. Check that it is closed and of even density.",
+                  options.object->path, kSettleTime));
 }
 
 struct Crossing {
@@ -122,15 +128,16 @@ void measurePinch(const contact::TriangleMesh& mesh, PickupObject& object) {
   Crossing left{std::numeric_limits<double>::infinity(), {}}, right{-std::numeric_limits<double>::infinity(), {}};
   for (const auto& triangle : mesh.triangles) {
     std::array<Vec3, 3> corners_W;
-    for (std::size_t i = 0; i < 3; ++i) corners_W[i] = object.rest_X_WB * mesh.vertices[static_cast<std::size_t>(triangle[i])];
+    for (std::size_t i = 0; i < 3; ++i)
+      corners_W[i] = object.rest_X_WB * mesh.vertices[static_cast<std::size_t>(triangle[i])];
     Crossing crossing;
     if (!cross(corners_W, object.place_W, crossing)) continue;
     if (crossing.x < left.x) left = crossing;
     if (crossing.x > right.x) right = crossing;
   }
   if (!(left.x < right.x)) {
-    throw InputError(
-        fmt::format("{}: no surface on the line along x through its centre of mass. Turn the object in its file.", mesh.source));
+    throw InputError(fmt::format(
+        "{}: no surface on the line along x through its centre of mass. Turn the object in its file.", mesh.source));
   }
   object.half_width = 0.5 * (right.x - left.x);
   object.asymmetry = std::abs(0.5 * (right.x + left.x) - object.place_W.x());
@@ -140,10 +147,10 @@ void measurePinch(const contact::TriangleMesh& mesh, PickupObject& object) {
 void requireGrip(const PickupObject& object, const std::string& source) {
   const double width = 2 * object.half_width;
   if (width <= kWidestGrip) return;
-  throw InputError(
-      fmt::format("{}: where the fingers pinch it the object is {:.3g} m wide; thumb and index finger grasp up to {} m. "
-                  "Give a smaller --size, or turn the object in its file.",
-                  source, width, kWidestGrip));
+  throw InputError(fmt::format(
+      "{}: where the fingers pinch it the object is {:.3g} m wide; thumb and index finger grasp up to {} m. "
+      "Give a smaller --size, or turn the object in its file.",
+      source, width, kWidestGrip));
 }
 
 PickupObject objectFromFile(const SpherePickupOptions& options) {
@@ -173,7 +180,8 @@ PickupObject makePickupObject(const SpherePickupOptions& options) {
   return object;
 }
 
-engine::WorldBuilder pickupWorld(const SpherePickupOptions& options, const contact::Shape& object, double mu_s, double mu_d) {
+engine::WorldBuilder pickupWorld(const SpherePickupOptions& options, const contact::Shape& object, double mu_s,
+                                 double mu_d) {
   engine::WorldBuilder builder{engine::WorldOptions{}};
   const engine::Material dish{options.dish_friction, options.dish_friction, 0, 0};
   builder.addBody({"dish", contact::Dish{options.dish_radius}, false, 0, dish});

@@ -13,8 +13,8 @@ constexpr double kFarthest = 0.3;  // [m]
 
 HandScene makePickupScene(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec) {
   HandScene scene = makeHandScene(options.hand, pickupWorld(options, object.shape, spec.mu_s, spec.mu_d),
-                                  {{}, {object.rest_X_WB, Vec3::Zero(), Vec3::Zero()}}, object.place_W, object.half_width,
-                                  spec.condition == PickupCondition::kCldForce);
+                                  {{}, {object.rest_X_WB, Vec3::Zero(), Vec3::Zero()}}, object.place_W,
+                                  object.half_width, spec.condition == PickupCondition::kCldForce);
   if (object.felt) grasp::feelAs(scene.model.grasp, kObjectBody, *object.felt);
   scene.object = kObjectBody;
   scene.cues.seed = spec.seed;
@@ -29,7 +29,8 @@ double clearanceOverDish(const HandScene& scene, const Pose& X_WB, contact::Patc
   contact::PairPoints points;
   contact::collideShapes(shapes[kObjectBody].shape, X_WB, shapes[kDishBody].shape, Pose(), kFarthest, patches, points);
   double clearance = kFarthest;
-  for (int i = 0; i < points.count; ++i) clearance = std::min(clearance, points.points[static_cast<std::size_t>(i)].phi);
+  for (int i = 0; i < points.count; ++i)
+    clearance = std::min(clearance, points.points[static_cast<std::size_t>(i)].phi);
   return clearance;
 }
 

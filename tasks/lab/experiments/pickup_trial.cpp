@@ -19,7 +19,8 @@ TrialHead headOf(const PickupTrialSpec& spec) {
 
 }  // namespace
 
-PickupTrial::PickupTrial(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec, RecordSink& sink)
+PickupTrial::PickupTrial(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec,
+                         RecordSink& sink)
     : HandTrial(makePickupScene(options, object, spec), headOf(spec), sink),
       spec_(spec),
       smallest_grip_(options.mass * 9.81 / (2 * spec.mu_s)),
@@ -84,7 +85,8 @@ HandGuide PickupTrial::taskGuide() const {
   } else if (above > 0.25 * scene().cues.half_width) {
     guide.hint = "Lower the fingers beside the object";
   } else {
-    guide.hint = touchesObject(0) || touchesObject(1) ? "One finger touches: go the other way a little" : "Squeeze: hold the left button";
+    guide.hint = touchesObject(0) || touchesObject(1) ? "One finger touches: go the other way a little"
+                                                      : "Squeeze: hold the left button";
   }
   return guide;
 }

@@ -8,7 +8,8 @@ namespace pincer::tasks {
 
 class PickupTrial final : public HandTrial {
  public:
-  PickupTrial(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec, RecordSink& sink);
+  PickupTrial(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec,
+              RecordSink& sink);
 
   const char* instruction() const override { return "Pinch the object, lift it by 50 mm and hold it for a second"; }
 

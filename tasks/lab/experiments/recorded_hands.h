@@ -1,4 +1,5 @@
-// recorded_hands: the hands of a person's trial as they were recorded, to do it again: each tick is given to the bit what it was given then.
+// recorded_hands: the hands of a person's trial as they were recorded, to do it again: each tick is
+// given to the bit what it was given then.
 #pragma once
 #include <vector>
 

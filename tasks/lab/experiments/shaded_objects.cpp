@@ -27,7 +27,8 @@ void giveNormals(contact::TriangleMesh& mesh, const Normals& normals) {
 }
 
 bool areAt(const std::array<Vec3, 3>& corners, int axis, double at, double size) {
-  return std::all_of(corners.begin(), corners.end(), [&](const Vec3& p) { return std::abs(p[axis] - at) < kOnFace * size; });
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](const Vec3& p) { return std::abs(p[axis] - at) < kOnFace * size; });
 }
 
 std::shared_ptr<const contact::SmoothMesh> built(contact::TriangleMesh mesh, contact::SurfaceVariant variant) {

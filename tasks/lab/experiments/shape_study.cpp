@@ -30,8 +30,9 @@ std::string namesAndKeys() {
 
 void requireEven(const char* name, int value) {
   if (value % 2 == 0) return;
-  throw ParameterError(fmt::format("sizes.{}", name),
-                       fmt::format("shape-identification: {} = {} is odd, but an even number is needed. {}", name, value, kAsPublished));
+  throw ParameterError(
+      fmt::format("sizes.{}", name),
+      fmt::format("shape-identification: {} = {} is odd, but an even number is needed. {}", name, value, kAsPublished));
 }
 
 }  // namespace
@@ -50,12 +51,14 @@ void validate(const ShapeStudy& s) {
   requireEven("sides", s.sizes.sides);
   requireEven("facet_sides", s.sizes.facet_sides);
   if (s.tactor_reach > s.finger_radius)
-    throw ParameterError("tactor_reach", fmt::format("shape-identification: tactor_reach = {} is out of range (0, finger_radius]. {}",
-                                                     s.tactor_reach, kAsPublished));
+    throw ParameterError("tactor_reach",
+                         fmt::format("shape-identification: tactor_reach = {} is out of range (0, finger_radius]. {}",
+                                     s.tactor_reach, kAsPublished));
   visitParameters(s.session, RangeCheck("shape-identification: session", "session"));
   validate(s.session, "shape-identification");
   requireOneBlock(s.session, "shape-identification", false);
-  if (s.conditions.empty()) throw ParameterError("conditions", "shape-identification: conditions is empty. Give at least one.");
+  if (s.conditions.empty())
+    throw ParameterError("conditions", "shape-identification: conditions is empty. Give at least one.");
 }
 
 ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& servo, int stride)
@@ -72,8 +75,8 @@ ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& se
   }
 }
 
-// Models of the conditions with the display, or of those without. In the first of the two such runs of a session a pointed one points to a side
-// that is drawn, in the second to the other.
+// Models of the conditions with the display, or of those without. In the first of the two such runs of a session a
+// pointed one points to a side that is drawn, in the second to the other.
 StudyRun ShapeExperiment::runOf(int participant, int run, bool display) const {
   StudyRun shown{participant, run, "", {}, {}};
   const auto pair = static_cast<std::uint64_t>(participant * study_.sessions * kRunsOfSession + run) / 2;
@@ -85,8 +88,8 @@ StudyRun ShapeExperiment::runOf(int participant, int run, bool display) const {
       shown.list.push_back({solid, isPointed(solid) ? side : std::nan(""), c.name});
     }
   }
-  Random random(
-      seedFor(seedFor(study_.seed, kModelOrder), static_cast<std::uint64_t>(participant * study_.sessions * kRunsOfSession + run)));
+  Random random(seedFor(seedFor(study_.seed, kModelOrder),
+                        static_cast<std::uint64_t>(participant * study_.sessions * kRunsOfSession + run)));
   shuffle(shown.list, random);
   return shown;
 }
@@ -103,8 +106,10 @@ std::vector<StudyRun> ShapeExperiment::runs() const {
   return runs;
 }
 
-std::shared_ptr<const contact::SmoothMesh> ShapeExperiment::modelOf(const StudyTrial& trial, const ShapeCondition& condition) const {
-  if (!study_.unrelated) return solids_[condition.shaded][trial.stimulus.level < 0][static_cast<std::size_t>(solidOf(trial.stimulus.name))];
+std::shared_ptr<const contact::SmoothMesh> ShapeExperiment::modelOf(const StudyTrial& trial,
+                                                                    const ShapeCondition& condition) const {
+  if (!study_.unrelated)
+    return solids_[condition.shaded][trial.stimulus.level < 0][static_cast<std::size_t>(solidOf(trial.stimulus.name))];
   Random random(seedFor(trial.seed, kUnrelated));
   const Solids& solids = solids_[random.below(2)][random.below(2)];
   return solids[random.below(kSolids)];
@@ -125,8 +130,8 @@ ShapeTrialSetup ShapeExperiment::setupOf(const StudyTrial& trial, const ShapeCon
   return setup;
 }
 
-std::optional<ResponseRecord> ShapeExperiment::present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
-                                                       ServoReport& served) {
+std::optional<ResponseRecord> ShapeExperiment::present(const StudyTrial& trial, StudySink& sink,
+                                                       const std::atomic<bool>& interrupted, ServoReport& served) {
   const auto condition = std::find_if(study_.conditions.begin(), study_.conditions.end(),
                                       [&](const ShapeCondition& c) { return c.name == trial.stimulus.condition; });
   const ShapeTrialSetup setup = setupOf(trial, *condition);
@@ -147,10 +152,10 @@ std::optional<ResponseRecord> ShapeExperiment::present(const StudyTrial& trial, 
 }
 
 StudyPage ShapeExperiment::introduction(const StudyRun&) const {
-  return {
-      "Which solid is it?",
-      {"One of seven solids stands before you. Explore it with the finger as long as you like, but answer as quickly as is comfortable.",
-       "The key of its name ends the trial; you can't change your mind:", namesAndKeys()}};
+  return {"Which solid is it?",
+          {"One of seven solids stands before you. Explore it with the finger as long as you like, but answer as "
+           "quickly as is comfortable.",
+           "The key of its name ends the trial; you can't change your mind:", namesAndKeys()}};
 }
 
 std::vector<ListedStimulus> ShapeExperiment::training(const StudyRun& run) const { return {run.list.front()}; }

@@ -1,9 +1,10 @@
 // shape_study: which of seven solids is it? Shaded or not, with the contact location display or force only.
 //
-// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2: 18 people; two sessions of four runs, two with the display, then two
-// without, for every other person the reverse; each run shows all 14 models (seven solids, shaded or not) once, shuffled. Cone and tetrahedron point
-// left or right, each once per session and way of rendering. 81.9 % right. A 1-DOF display on a finger of 20 mm radius, as in ch. 2's first experiment (ours);
-// friction 0.1 (ours).
+// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2: 18 people; two sessions of
+// four runs, two with the display, then two without, for every other person the reverse; each run shows all
+// 14 models (seven solids, shaded or not) once, shuffled. Cone and tetrahedron point left or right, each once
+// per session and way of rendering. 81.9 % right. A 1-DOF display on a finger of 20 mm radius, as in ch. 2's
+// first experiment (ours); friction 0.1 (ours).
 #pragma once
 #include <array>
 

@@ -51,7 +51,8 @@ std::array<double, 3> tripleIn(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 }  // namespace
 
-// Places on the pad are azimuthal about its middle: the direction of the contact from the finger's centre, and that one's angle fore-aft.
+// Places on the pad are azimuthal about its middle: the direction of the contact from the
+// finger's centre, and that one's angle fore-aft.
 devices::TactileCommand onRoller(const devices::TactileCommand& command, double r, double reach) {
   const double way = command.place_L.norm();
   if (command.parked || !(way > 0)) return {command.parked, Vec2::Zero()};

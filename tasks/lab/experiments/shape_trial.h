@@ -1,10 +1,13 @@
-// shape_trial: one trial of shape identification (tasks/lab/finger/finger_trial.h): a finger on its arm, wearing a 1-DOF contact location display,
-// feels a solid that stands still, through the tick of tasks/run/tick/tick.h; at the end it is named.
+// shape_trial: one trial of shape identification (tasks/lab/finger/finger_trial.h): a finger on its arm,
+// wearing a 1-DOF contact location display, feels a solid that stands still, through the tick of
+// tasks/run/tick/tick.h; at the end it is named.
 //
-//   s = r a,  a the fore-aft angle of the contact on the finger, |s| <= reach        place of the roller; left-right isn't shown
+//   s = r a,  a the fore-aft angle of the contact on the finger, |s| <= reach
+//             place of the roller; left-right isn't shown
 //
-// The finger waits a second above the solid, then a tone; time and contact are counted from the first touch to the answer. The arm's base frame D
-// has x right, y up and z towards the operator (W: x right, y away, z up); the solid's middle is W's origin, the finger points away (+y).
+// The finger waits a second above the solid, then a tone; time and contact are counted from the first touch to the
+// answer. The arm's base frame D has x right, y up and z towards the operator (W: x right, y away, z up); the solid's
+// middle is W's origin, the finger points away (+y).
 #pragma once
 #include "pincer/tasks/lab/finger/finger_trial.h"
 #include "pincer/tasks/lab/participants/shape_explorer.h"

@@ -10,7 +10,8 @@ constexpr double kThumbRing = 0.021;  // [m]; the index finger's has 19 mm (Doxo
 
 }  // namespace
 
-SimulatedHands::SimulatedHands(const HandScene& scene, Participant& participant) : participant_(participant), samples_(kHandFingers) {
+SimulatedHands::SimulatedHands(const HandScene& scene, Participant& participant)
+    : participant_(participant), samples_(kHandFingers) {
   for (std::size_t i = 0; i < kHandFingers; ++i) {
     devices::SimArmSettings arm;
     arm.serial = scene.model.grasp.fingers[i].name;

@@ -1,6 +1,8 @@
-// simulated_hands: the two arms and displays of the set-up in virtual time, and the participant whose fingers wear them.
+// simulated_hands: the two arms and displays of the set-up in virtual time, and
+// the participant whose fingers wear them.
 //
-// The participant is given the arms' and displays' samples, the forces that the arms were told to render, and tones; nothing else.
+// The participant is given the arms' and displays' samples, the forces that the arms were
+// told to render, and tones; nothing else.
 #pragma once
 #include <array>
 #include <vector>

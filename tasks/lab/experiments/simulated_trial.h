@@ -1,4 +1,5 @@
-// simulated_trial: one trial with a simulated participant on simulated devices, as a cycle of the servo. Its time begins with the trial.
+// simulated_trial: one trial with a simulated participant on simulated devices, as a cycle of
+// the servo. Its time begins with the trial.
 #pragma once
 #include <memory>
 

@@ -13,7 +13,9 @@
 namespace pincer::tasks {
 namespace {
 
-std::vector<Vec2> prismProfile(double radius, double half) { return {{0, -half}, {radius, -half}, {radius, half}, {0, half}}; }
+std::vector<Vec2> prismProfile(double radius, double half) {
+  return {{0, -half}, {radius, -half}, {radius, half}, {0, half}};
+}
 std::vector<Vec2> pyramidProfile(double radius, double half) { return {{0, -half}, {radius, -half}, {0, half}}; }
 
 std::vector<Vec2> ballProfile(double radius, int sides) {
@@ -36,8 +38,10 @@ contact::TriangleMesh uprightSolid(const std::string& name, const SolidSizes& s,
   if (name == "tetrahedron") return contact::lathe(pyramidProfile(s.radius, half), 3);
   if (name == "octagon") return contact::lathe(prismProfile(s.radius, half), 8);
   if (name == "triangle") return contact::lathe(prismProfile(s.radius, half), 3);
-  throw InputError(fmt::format(
-      "shape-identification: there is no solid \"{}\". Take cone, cylinder, cube, sphere, tetrahedron, octagon or triangle.", name));
+  throw InputError(
+      fmt::format("shape-identification: there is no solid \"{}\". Take cone, cylinder, cube, sphere, tetrahedron, "
+                  "octagon or triangle.",
+                  name));
 }
 
 // z to the right, +x up; a face up by half of what lies between two corners.
@@ -46,14 +50,16 @@ Quat lyingPose(const std::string& name, bool points_left) {
   R << Vec3::UnitZ(), -Vec3::UnitY(), Vec3::UnitX();
   const double pi = std::numbers::pi;
   const double turn = name == "cube" ? pi / 4 : name == "octagon" ? pi / 8 : 0;
-  return quatFromRotationVector((points_left ? pi : 0) * Vec3::UnitZ()) * Quat(R) * quatFromRotationVector(turn * Vec3::UnitZ());
+  return quatFromRotationVector((points_left ? pi : 0) * Vec3::UnitZ()) * Quat(R) *
+         quatFromRotationVector(turn * Vec3::UnitZ());
 }
 
 }  // namespace
 
 bool isPointed(const std::string& name) { return name == "cone" || name == "tetrahedron"; }
 
-std::shared_ptr<const contact::SmoothMesh> makeSolid(const std::string& name, bool shaded, const SolidSizes& sizes, bool points_left) {
+std::shared_ptr<const contact::SmoothMesh> makeSolid(const std::string& name, bool shaded, const SolidSizes& sizes,
+                                                     bool points_left) {
   contact::TriangleMesh mesh = contact::transformed(uprightSolid(name, sizes, shaded ? sizes.sides : sizes.facet_sides),
                                                     {lyingPose(name, points_left), Vec3::Zero()});
   mesh.source = name;

@@ -14,14 +14,16 @@ void checkConditions(const SpherePickupOptions& o) {
   if (o.conditions.empty()) throw InputError("sphere-pickup: conditions is empty. Give force, cld+force, or both.");
   for (auto first = o.conditions.begin(); first != o.conditions.end(); ++first) {
     if (std::find(first + 1, o.conditions.end(), *first) == o.conditions.end()) continue;
-    throw InputError(fmt::format("sphere-pickup: condition \"{}\" is given twice. Name each condition once.", nameOf(*first)));
+    throw InputError(
+        fmt::format("sphere-pickup: condition \"{}\" is given twice. Name each condition once.", nameOf(*first)));
   }
 }
 
 // Every friction `repetitions` times, shuffled (Fisher, Yates).
 std::vector<double> shuffledFrictions(const SpherePickupOptions& options, std::uint64_t seed) {
   std::vector<double> frictions;
-  for (int i = 0; i < options.repetitions; ++i) frictions.insert(frictions.end(), options.frictions.begin(), options.frictions.end());
+  for (int i = 0; i < options.repetitions; ++i)
+    frictions.insert(frictions.end(), options.frictions.begin(), options.frictions.end());
   Random random(seed);
   for (std::size_t i = frictions.size(); i > 1; --i) std::swap(frictions[i - 1], frictions[random.below(i)]);
   return frictions;

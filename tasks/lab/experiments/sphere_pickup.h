@@ -1,9 +1,11 @@
-// sphere_pickup: the protocol of "pick up spheres of different friction" (A. J. Doxon, dissertation, University of Utah, 2014).
+// sphere_pickup: the protocol of "pick up spheres of different friction" (A. J. Doxon,
+// dissertation, University of Utah, 2014).
 //
-// Index finger and thumb, facing each other, pick up an object that lies in a shallow dish, without seeing it, under two conditions: force
-// only (tactors parked) and contact location display + force. Every participant does every friction `repetitions` times per condition, in an
-// order shuffled by the seed; every other participant begins with the second condition.
-// Smallest grip that can carry the object: m g / (2 mu). Sizes that Doxon leaves open are ours (docs: design of the tasks).
+// Index finger and thumb, facing each other, pick up an object that lies in a shallow dish, without seeing it,
+// under two conditions: force only (tactors parked) and contact location display + force. Every participant does
+// every friction `repetitions` times per condition, in an order shuffled by the seed; every other participant
+// begins with the second condition. Smallest grip that can carry the object: m g / (2 mu). Sizes that Doxon leaves
+// open are ours (docs: design of the tasks).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -34,7 +36,7 @@ struct SpherePickupOptions {
   double dynamic_ratio = 0.85;                            // mu_d / mu_s [-], (0, 1]
   double torsion_radius = 3.3e-3;                         // of the soft fingertip's patch [m], 0 .. 0.02
   double dish_radius = 0.150;                             // of curvature [m], 0.1 .. 10
-  double dish_friction = 0.5;                             // mu of the dish [-], 0 .. 5; with the object: the geometric mean
+  double dish_friction = 0.5;  // mu of the dish [-], 0 .. 5; with the object: the geometric mean
   HandSetup hand;
   double success_height = 0.050;  // [m], 0.005 .. 0.08 (the arms' reach)
   double hold_time = 1.0;         // at that height [s], 0 .. 10
@@ -44,7 +46,8 @@ struct SpherePickupOptions {
   int participants = 1;  // 1 .. 1000
   std::uint64_t seed = 1;
   std::optional<ObjectFile> object;  // in place of the sphere
-  // Shading by which fingers feel the sphere, a mesh; absent: its closed form. Bodies and mass know the closed form in any case.
+  // Shading by which fingers feel the sphere, a mesh; absent: its closed form. Bodies
+  // and mass know the closed form in any case.
   std::optional<contact::SurfaceVariant> shading = contact::SurfaceVariant::smooth;
 };
 

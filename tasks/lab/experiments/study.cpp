@@ -20,7 +20,9 @@ class RunProgress {
     if (run.staircase) staircase_.emplace(*run.staircase);
   }
   bool over() const { return staircase_ ? staircase_->over() : index_ >= run_.list.size(); }
-  double share() const { return staircase_ ? staircase_->progress() : static_cast<double>(index_) / static_cast<double>(run_.list.size()); }
+  double share() const {
+    return staircase_ ? staircase_->progress() : static_cast<double>(index_) / static_cast<double>(run_.list.size());
+  }
   ListedStimulus next() const { return staircase_ ? ListedStimulus{"", staircase_->level()} : run_.list[index_]; }
   // Returns whether the staircase turned.
   bool take(const ResponseRecord& response) {
@@ -42,14 +44,14 @@ const std::string& conditionOf(const StudyTrial& trial) {
 void requireSameTrial(const ResponseRecord& earlier, const StudyTrial& trial) {
   const StudyRun& run = *trial.run;
   const std::string& condition = conditionOf(trial);
-  if (earlier.trial == trial.trial && earlier.participant == run.participant && earlier.run == run.run && earlier.index == trial.index &&
-      earlier.condition == condition && earlier.stimulus == trial.stimulus.name &&
+  if (earlier.trial == trial.trial && earlier.participant == run.participant && earlier.run == run.run &&
+      earlier.index == trial.index && earlier.condition == condition && earlier.stimulus == trial.stimulus.name &&
       (earlier.level == trial.stimulus.level || earlier.level != earlier.level))
     return;
-  throw InputError(
-      fmt::format("trial {} of the session isn't the one that this study would show: participant {}, {}, level {}. Resume with "
-                  "the parameters and the seed of the session.",
-                  trial.trial + 1, earlier.participant + 1, earlier.condition, earlier.level));
+  throw InputError(fmt::format(
+      "trial {} of the session isn't the one that this study would show: participant {}, {}, level {}. Resume with "
+      "the parameters and the seed of the session.",
+      trial.trial + 1, earlier.participant + 1, earlier.condition, earlier.level));
 }
 
 // Keeps nothing: of trials of training.
@@ -64,8 +66,14 @@ class StudyRunner {
  public:
   StudyRunner(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier, StudySink& sink,
               const std::atomic<bool>& interrupted)
-      : experiment_(experiment), seed_(seed), earlier_(earlier), sink_(sink), interrupted_(interrupted), runs_(experiment.runs()) {
-    if (const auto person = experiment.host().person) std::erase_if(runs_, [&](const StudyRun& run) { return run.participant != *person; });
+      : experiment_(experiment),
+        seed_(seed),
+        earlier_(earlier),
+        sink_(sink),
+        interrupted_(interrupted),
+        runs_(experiment.runs()) {
+    if (const auto person = experiment.host().person)
+      std::erase_if(runs_, [&](const StudyRun& run) { return run.participant != *person; });
   }
 
   StudyOutcome run(const std::function<void(const StudyProgress&)>& progress) {
@@ -83,7 +91,8 @@ class StudyRunner {
   }
 
  private:
-  StudyTrial trialOf(const StudyRun& run, std::int64_t index, const ListedStimulus& stimulus, std::uint64_t part) const {
+  StudyTrial trialOf(const StudyRun& run, std::int64_t index, const ListedStimulus& stimulus,
+                     std::uint64_t part) const {
     StudyTrial trial{outcome_.trials, index, &run, stimulus, 0, 0};
     trial.person_seed = seedFor(seedFor(seed_, kPeople), static_cast<std::uint64_t>(run.participant));
     trial.seed = seedFor(seedFor(seed_, part), static_cast<std::uint64_t>(trial.trial));
@@ -138,7 +147,8 @@ class StudyRunner {
       outcome_.interrupted = !response || !experiment_.host().show({"Training", {experiment_.feedback(*response)}});
       if (outcome_.interrupted) return;
     }
-    outcome_.interrupted = !experiment_.host().show({"The trials begin", {"From now on nothing is shown. There is no time limit."}});
+    outcome_.interrupted =
+        !experiment_.host().show({"The trials begin", {"From now on nothing is shown. There is no time limit."}});
   }
 
   Experiment& experiment_;
@@ -159,7 +169,8 @@ Order conditionOrder(ConditionOrder order, std::size_t count, std::int64_t parti
   if (order == ConditionOrder::kBalanced) return rows[static_cast<std::size_t>(participant + block) % rows.size()];
   Order listed = rows[0];
   if (order == ConditionOrder::kListed) return listed;
-  Random random(seedFor(seedFor(seedFor(seed, kOrders), static_cast<std::uint64_t>(participant)), static_cast<std::uint64_t>(block)));
+  Random random(seedFor(seedFor(seedFor(seed, kOrders), static_cast<std::uint64_t>(participant)),
+                        static_cast<std::uint64_t>(block)));
   shuffle(listed, random);
   return listed;
 }
@@ -169,7 +180,8 @@ std::unique_ptr<WornFinger> Experiment::wornBy(const FingerPlace& place, OneFing
   return std::make_unique<SimulatedFinger>(place, observer);
 }
 
-bool Experiment::serve(FingerTrial& cycle, const StudyTrial& trial, const std::atomic<bool>& interrupted, ServoReport& served) const {
+bool Experiment::serve(FingerTrial& cycle, const StudyTrial& trial, const std::atomic<bool>& interrupted,
+                       ServoReport& served) const {
   cycle.begin();
   const TrialPlace place{trial.index + 1, static_cast<std::int64_t>(trial.run->list.size()), tasks::conditionOf(trial)};
   const ServoReport report = host_.serve ? host_.serve(cycle, place) : runServo(servo_, cycle, interrupted);
@@ -179,8 +191,9 @@ bool Experiment::serve(FingerTrial& cycle, const StudyTrial& trial, const std::a
   return cycle.fault().empty() || !host_.arm || host_.arm(cycle.fault());
 }
 
-StudyOutcome runStudy(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier, StudySink& sink,
-                      const std::atomic<bool>& interrupted, const std::function<void(const StudyProgress&)>& progress) {
+StudyOutcome runStudy(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier,
+                      StudySink& sink, const std::atomic<bool>& interrupted,
+                      const std::function<void(const StudyProgress&)>& progress) {
   StudyOutcome outcome = StudyRunner(experiment, seed, earlier, sink, interrupted).run(progress);
   return outcome;
 }

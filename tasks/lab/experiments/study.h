@@ -1,8 +1,10 @@
-// study: what all psychophysical experiments share: whom is shown what in which order, answers into records, trial by trial.
+// study: what all psychophysical experiments share: whom is shown what in which
+// order, answers into records, trial by trial.
 //
-// A study is a list of runs, one participant's each: a staircase, which chooses its next level from the answers, or a list of trials. All
-// that happens in a trial follows from the study's parameters, the trial's place and the seed: the same seed gives the same session, and a
-// session that was cut short goes on where it ended, its finished answers fed to the staircases again.
+// A study is a list of runs, one participant's each: a staircase, which chooses its next level from the answers,
+// or a list of trials. All that happens in a trial follows from the study's parameters, the trial's place and the
+// seed: the same seed gives the same session, and a session that was cut short goes on where it ended, its
+// finished answers fed to the staircases again.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -57,10 +59,11 @@ class Experiment {
   explicit Experiment(const ServoOptions& servo) : servo_(servo) {}
   virtual ~Experiment() = default;
   virtual std::vector<StudyRun> runs() const = 0;
-  // Shows the trial to its participant and takes the answer: stimulus, level, interval, answer, correct, outcome and what is measured; the
-  // rest is filled in by the caller. Absent if `interrupted` turned true. Adds what the servo says to `served`.
-  virtual std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink, const std::atomic<bool>& interrupted,
-                                                ServoReport& served) = 0;
+  // Shows the trial to its participant and takes the answer: stimulus, level, interval, answer, correct,
+  // outcome and what is measured; the rest is filled in by the caller. Absent if `interrupted` turned
+  // true. Adds what the servo says to `served`.
+  virtual std::optional<ResponseRecord> present(const StudyTrial& trial, StudySink& sink,
+                                                const std::atomic<bool>& interrupted, ServoReport& served) = 0;
   // The text that a person reads before the run, and stimuli to train with, in turn; at least one.
   virtual StudyPage introduction(const StudyRun& run) const = 0;
   virtual std::vector<ListedStimulus> training(const StudyRun& run) const = 0;
@@ -77,7 +80,8 @@ class Experiment {
   // Whoever wears the finger: the host's, or a simulated participant, who has begun and outlives it.
   std::unique_ptr<WornFinger> wornBy(const FingerPlace& place, OneFingerObserver& observer) const;
   // Runs the trial. False if `interrupted` turned true, or the operator doesn't switch forces on again after a fault.
-  bool serve(FingerTrial& cycle, const StudyTrial& trial, const std::atomic<bool>& interrupted, ServoReport& served) const;
+  bool serve(FingerTrial& cycle, const StudyTrial& trial, const std::atomic<bool>& interrupted,
+             ServoReport& served) const;
 
  private:
   ServoOptions servo_;
@@ -94,9 +98,11 @@ struct StudyOutcome {
   ServoReport servo;
 };
 
-// Runs the study from the first trial that isn't among `earlier`, which are an earlier session's, in order. A person reads an introduction before each
-// run, trains, and may rest. Throws InputError where the earlier ones don't fit the study.
-StudyOutcome runStudy(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier, StudySink& sink,
-                      const std::atomic<bool>& interrupted, const std::function<void(const StudyProgress&)>& progress = {});
+// Runs the study from the first trial that isn't among `earlier`, which are an earlier session's, in
+// order. A person reads an introduction before each run, trains, and may rest. Throws InputError
+// where the earlier ones don't fit the study.
+StudyOutcome runStudy(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier,
+                      StudySink& sink, const std::atomic<bool>& interrupted,
+                      const std::function<void(const StudyProgress&)>& progress = {});
 
 }  // namespace pincer::tasks

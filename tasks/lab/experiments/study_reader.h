@@ -1,5 +1,6 @@
-// study_reader: readStudyText(): a study's parameters from its file (tasks/run/files/strict_json.h), by the lists of study_parameters.h. What the file leaves out stays
-// as it is; a key that no list has, a number out of its range, a word that isn't known: InputError with file, line, path, value and remedy.
+// study_reader: readStudyText(): a study's parameters from its file (tasks/run/files/strict_json.h), by the lists of
+// study_parameters.h. What the file leaves out stays as it is; a key that no list has, a number out of its range, a
+// word that isn't known: InputError with file, line, path, value and remedy.
 #pragma once
 #include <cmath>
 #include <initializer_list>
@@ -27,7 +28,9 @@ inline void readField(const JsonValue& v, std::string& field, const Parameter&) 
 
 template <class Word>
 requires std::is_enum_v<Word>
-void readField(const JsonValue& v, Word& field, const Parameter& parameter) { field = static_cast<Word>(v.oneOf(parameter.words)); }
+void readField(const JsonValue& v, Word& field, const Parameter& parameter) {
+  field = static_cast<Word>(v.oneOf(parameter.words));
+}
 
 template <HasParameters Object>
 void readField(const JsonValue& v, Object& field, const Parameter&) {
@@ -40,8 +43,8 @@ void readField(const JsonValue& v, std::optional<Field>& field, const Parameter&
   if (v.kind() != JsonValue::Kind::kNull) readField(v, field.emplace(), parameter);
 }
 
-// An item of a list: one with the name of a published one begins as that; one with a new name as the first, but for what is said of that one
-// alone: it is labelled by its name, and nothing was published of it.
+// An item of a list: one with the name of a published one begins as that; one with a new name as the first, but for
+// what is said of that one alone: it is labelled by its name, and nothing was published of it.
 template <class Item>
 Item namedItem(const JsonValue& json, const std::vector<Item>& known) {
   const std::string& name = json.at("name", "Each condition has one.").text();

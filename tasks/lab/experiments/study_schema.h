@@ -1,4 +1,5 @@
-// study_schema: the JSON Schema (draft 2020-12) of a study's file, by the lists of study_parameters.h: for editors, and for the reference in docs/.
+// study_schema: the JSON Schema (draft 2020-12) of a study's file, by the lists of study_parameters.h: for
+// editors, and for the reference in docs/.
 #pragma once
 #include <cmath>
 

@@ -1,5 +1,5 @@
-// study_writer: a study's parameters as its file: every value, and behind it what it means as a comment. Of the items of a list only the first
-// is explained. Numbers have the fewest digits that read back to the same bits.
+// study_writer: a study's parameters as its file: every value, and behind it what it means as a comment. Of the items
+// of a list only the first is explained. Numbers have the fewest digits that read back to the same bits.
 //
 //   studyText(study)   the file; study_reader.h reads it
 #pragma once
@@ -28,7 +28,9 @@ class CommentedJson {
   bool pending_ = false;  // a value whose line isn't ended
 };
 
-inline std::string jsonOf(double field, const Parameter&) { return std::isfinite(field) ? fmt::format("{}", field) : "null"; }
+inline std::string jsonOf(double field, const Parameter&) {
+  return std::isfinite(field) ? fmt::format("{}", field) : "null";
+}
 inline std::string jsonOf(int field, const Parameter&) { return std::to_string(field); }
 inline std::string jsonOf(std::uint64_t field, const Parameter&) { return std::to_string(field); }
 inline std::string jsonOf(bool field, const Parameter&) { return field ? "true" : "false"; }
@@ -47,7 +49,8 @@ template <HasParameters Object>
 void writeMembers(CommentedJson& out, const Object& object) {
   visitParameters(object, [&]<class Field>(std::string_view key, const Field& field, const Parameter& parameter) {
     if constexpr (std::same_as<Field, SurveyPlan>) {
-      if (field == manipulationSurvey() || field == oneFingerSurvey()) return;  // as given: hundreds of lines that say nothing new
+      // as given: hundreds of lines that say nothing new
+      if (field == manipulationSurvey() || field == oneFingerSurvey()) return;
     }
     out.key(key);
     writeField(out, field, parameter);

@@ -129,8 +129,9 @@ class CommonGround {
   static void same(Known& known, const std::string& value, const std::string& path, const char* what) {
     if (!known.first) known = {true, value};
     if (known.second == value) return;
-    throw InputError(fmt::format("{}: is of another {} ({}) than the sessions before it ({}). Give another --out, or run them all again.",
-                                 path, what, value, known.second));
+    throw InputError(fmt::format(
+        "{}: is of another {} ({}) than the sessions before it ({}). Give another --out, or run them all again.", path,
+        what, value, known.second));
   }
   Known commit_, claims_;
   std::map<std::string, Known> people_;

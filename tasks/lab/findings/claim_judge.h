@@ -9,7 +9,8 @@
 
 namespace pincer::tasks {
 
-// Files by study. Controls: the tactor is parked in every condition; what is felt is drawn, whatever is asked (shape identification).
+// Files by study. Controls: the tactor is parked in every condition; what is felt is drawn,
+// whatever is asked (shape identification).
 struct StudySessions {
   std::map<std::string, std::vector<std::string>> studies, parked, unrelated;
 };
@@ -29,7 +30,8 @@ struct ClaimTable {
 // Evidence of one claim from studies' measures.
 ClaimEvidence evidenceOf(const Claim& claim, const std::vector<StudyMeasures>& studies);
 
-// Unfinished sessions are left out. Throws InputError for a session that can't be read, and where two are of different commits, claims or people.
+// Unfinished sessions are left out. Throws InputError for a session that can't be read, and where two
+// are of different commits, claims or people.
 ClaimTable judgeClaims(const StudySessions& sessions);
 
 std::string claimTableText(const ClaimTable& table);

@@ -83,7 +83,8 @@ StudyMeasures measuresOf(const StudySummary& summary, const std::vector<Response
     return measures;
   }
   for (const StudyCondition& c : summary.conditions) {
-    for (const StudyPerson& person : c.people) measures.people[c.name].push_back(summary.headline.scale * person.headline);
+    for (const StudyPerson& person : c.people)
+      measures.people[c.name].push_back(summary.headline.scale * person.headline);
     measures.unsettled[c.name] = isUnsettled(c);
     addSpeeds(c, responses, measures);
   }
@@ -96,8 +97,10 @@ StudyMeasures measuresOf(const StudySummary& summary, const std::vector<Response
 }
 
 StudyMeasures measuresOf(const std::vector<TrialRecord>& trials) {
-  const std::map<std::string, std::string> names = {
-      {"tries", "tries"}, {"pickup_time", "pickup-time"}, {"alignment_error", "alignment-error"}, {"alignment_time", "alignment-time"}};
+  const std::map<std::string, std::string> names = {{"tries", "tries"},
+                                                    {"pickup_time", "pickup-time"},
+                                                    {"alignment_error", "alignment-error"},
+                                                    {"alignment_time", "alignment-time"}};
   std::map<std::int64_t, std::vector<TrialRecord>> of_person;
   for (const TrialRecord& t : trials) of_person[t.participant].push_back(t);
   StudyMeasures measures;

@@ -20,10 +20,13 @@ std::string plusMinus(double mean, double half) {
   return std::isfinite(half) ? fmt::format("{} ± {}", number(mean), number(half)) : number(mean);
 }
 
-bool isJudged(const Claim& c) { return c.kind == ClaimKind::kFigure || c.kind == ClaimKind::kOrder || c.kind == ClaimKind::kNull; }
+bool isJudged(const Claim& c) {
+  return c.kind == ClaimKind::kFigure || c.kind == ClaimKind::kOrder || c.kind == ClaimKind::kNull;
+}
 
 std::string publishedText(const Claim& c) {
-  if (c.kind == ClaimKind::kFigure) return std::isnan(c.half_width) ? number(c.mean) + " ± lost" : plusMinus(c.mean, c.half_width);
+  if (c.kind == ClaimKind::kFigure)
+    return std::isnan(c.half_width) ? number(c.mean) + " ± lost" : plusMinus(c.mean, c.half_width);
   return c.kind == ClaimKind::kOrder ? "this order" : c.kind == ClaimKind::kNull ? "no difference" : "-";
 }
 
@@ -33,14 +36,15 @@ std::string foundText(const Claim& c, const ClaimEvidence& e) {
   if (!hasEvidence(c, e)) return "";
   if (c.kind == ClaimKind::kFigure) {
     const char* bound = 2 * e.unsettled > e.studies ? "no threshold: " : "";
-    return bound + plusMinus(e.mean_a, e.half_a) + (c.half_width > 0 ? fmt::format(" (h_sim/h {:.2g})", e.own_half / c.half_width) : "");
+    return bound + plusMinus(e.mean_a, e.half_a) +
+           (c.half_width > 0 ? fmt::format(" (h_sim/h {:.2g})", e.own_half / c.half_width) : "");
   }
   const std::string means = fmt::format("{} and {}", number(e.mean_a), number(e.mean_b));
   const bool ratio = c.margin_kind == MarginKind::kRatio;
-  const std::string difference =
-      ratio ? fmt::format("ratio {} [{}, {}]", number(math::exp(e.difference)), number(math::exp(e.difference - e.difference_half)),
-                          number(math::exp(e.difference + e.difference_half)))
-            : "difference " + plusMinus(e.difference, e.difference_half);
+  const std::string difference = ratio ? fmt::format("ratio {} [{}, {}]", number(math::exp(e.difference)),
+                                                     number(math::exp(e.difference - e.difference_half)),
+                                                     number(math::exp(e.difference + e.difference_half)))
+                                       : "difference " + plusMinus(e.difference, e.difference_half);
   const std::string effect = std::isfinite(e.effect) ? fmt::format(", d_z {:.2g}", e.effect) : "";
   return fmt::format("{}; {}{}", means, difference, effect);
 }
@@ -50,15 +54,16 @@ std::string countsText(const Claim& c, const ClaimEvidence& e) {
   if (c.kind == ClaimKind::kFigure) return fmt::format("hits {} of {}", e.hits, e.studies);
   if (c.kind == ClaimKind::kNull) return fmt::format("significant {} of {}", e.significant, e.studies);
   const std::string way = fmt::format("that way {} of {}", e.that_way, e.studies);
-  return c.test == ClaimTest::kNone
-             ? way
-             : fmt::format("{}, significant {}{}", way, e.significant_that_way, e.paired > 0 ? fmt::format(", paired {}", e.paired) : "");
+  return c.test == ClaimTest::kNone ? way
+                                    : fmt::format("{}, significant {}{}", way, e.significant_that_way,
+                                                  e.paired > 0 ? fmt::format(", paired {}", e.paired) : "");
 }
 
 // An order or a figure that rests on touch must be gone.
 std::string controlText(const Claim& c, const ClaimEvidence& e) {
   if (!hasEvidence(c, e)) return "";
-  return c.kind == ClaimKind::kFigure ? (2 * e.unsettled > e.studies ? "no threshold" : number(e.mean_a)) : countsText(c, e);
+  return c.kind == ClaimKind::kFigure ? (2 * e.unsettled > e.studies ? "no threshold" : number(e.mean_a))
+                                      : countsText(c, e);
 }
 
 std::vector<std::string> claimCells(const ClaimRow& row) {
@@ -132,8 +137,9 @@ std::string claimTableCsv(const ClaimTable& table) {
   for (const ClaimRow& row : table.rows) {
     const Claim& c = *row.claim;
     const ClaimEvidence& e = row.evidence;
-    csv.row(c.id, c.study, c.what, c.unit, c.mean, c.half_width, e.studies, e.hits, e.that_way, e.significant, e.significant_that_way,
-            e.paired, e.mean_a, e.mean_b, e.difference, e.difference_half, e.own_half, e.effect, verdictOn(c, e));
+    csv.row(c.id, c.study, c.what, c.unit, c.mean, c.half_width, e.studies, e.hits, e.that_way, e.significant,
+            e.significant_that_way, e.paired, e.mean_a, e.mean_b, e.difference, e.difference_half, e.own_half, e.effect,
+            verdictOn(c, e));
   }
   return csv.take();
 }

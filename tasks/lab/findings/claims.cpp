@@ -17,7 +17,8 @@ constexpr double kWidestOfLost = 0.25, kWidestOfKnown = 2;
 bool certainlyMost(int k, int n) { return wilsonInterval(k, n).first > 0.5; }
 
 bool isNarrow(const Claim& c, const ClaimEvidence& e) {
-  return std::isnan(c.half_width) ? e.own_half <= kWidestOfLost * std::abs(c.mean) : e.own_half <= kWidestOfKnown * c.half_width;
+  return std::isnan(c.half_width) ? e.own_half <= kWidestOfLost * std::abs(c.mean)
+                                  : e.own_half <= kWidestOfKnown * c.half_width;
 }
 
 std::string figureVerdict(const Claim& c, const ClaimEvidence& e) {
@@ -56,9 +57,9 @@ std::string verdictOn(const Claim& c, const ClaimEvidence& e) {
 std::string claimsText() {
   std::string text;
   for (const Claim& c : publishedClaims()) {
-    text += fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}\n", c.id, c.study, static_cast<int>(c.kind), c.what, c.unit, c.a, c.b,
-                        c.mean, std::isnan(c.half_width) ? -1 : c.half_width, static_cast<int>(c.test), static_cast<int>(c.margin_kind),
-                        c.margin, static_cast<int>(c.mark));
+    text += fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}\n", c.id, c.study, static_cast<int>(c.kind), c.what,
+                        c.unit, c.a, c.b, c.mean, std::isnan(c.half_width) ? -1 : c.half_width,
+                        static_cast<int>(c.test), static_cast<int>(c.margin_kind), c.margin, static_cast<int>(c.mark));
   }
   return text;
 }

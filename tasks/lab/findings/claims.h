@@ -1,18 +1,23 @@
-// claims: every published finding F1 .. F48 as one row of data, fixed before a study is run, and the rule by which each is judged.
+// claims: every published finding F1 .. F48 as one row of data, fixed before a study is
+// run, and the rule by which each is judged.
 //
-// Source: A. J. Doxon, doctoral dissertation, University of Utah, 2014, ch. 2 to 4; half-widths and tests rebuilt from other printed figures where the
-// copy at hand lost them. A simulated study is the published design with its number of people; the published test (two-sided, .05) is run on each.
-// "Certainly": Wilson's 95 % interval of the share of studies.
+// Source: A. J. Doxon, doctoral dissertation, University of Utah, 2014, ch. 2 to 4; half-widths and tests
+// rebuilt from other printed figures where the copy at hand lost them. A simulated study is the published
+// design with its number of people; the published test (two-sided, .05) is run on each. "Certainly":
+// Wilson's 95 % interval of the share of studies.
 //
-//   figure   hit: |mean - m| <= sqrt(h^2 + h_sim^2)      follows: the misses are compatible with 5 %, and h_sim <= 2 h (h lost: <= m / 4), so that
-//                                                        noisy people don't follow more easily;  mostly: hits in certainly more than half
-//   order    a < b                                       follows: that way and significant in certainly more than half;  same direction only: that
-//                                                        way in certainly more than half;  reversed: the other way in certainly more than half
-//   null     a = b                                       follows: the interval of the mean difference over all studies lies within the margin;
-//                                                        mostly: not significant in certainly more than half;  does not follow: significant in so many
+//   figure   hit: |mean - m| <= sqrt(h^2 + h_sim^2)      follows: the misses are compatible with 5 %, and h_sim <= 2 h
+//                                                        (h lost: <= m / 4), so that noisy people don't follow more
+//                                                        easily;  mostly: hits in certainly more than half
+//   order    a < b                                       follows: that way and significant in certainly more than half;
+//                                                        same direction only: that way in certainly more than half;
+//                                                        reversed: the other way in certainly more than half
+//   null     a = b                                       follows: the interval of the mean difference over all studies
+//                                                        lies within the margin; mostly: not significant in certainly
+//                                                        more than half;  does not follow: significant in so many
 //
-// Bench rows, what only people can say, and what wasn't tested have no verdict here. A figure that people's limits were taken from ("calibration") is
-// never counted; of a pilot of two people the best verdict is "same direction only".
+// Bench rows, what only people can say, and what wasn't tested have no verdict here. A figure that people's limits were
+// taken from ("calibration") is never counted; of a pilot of two people the best verdict is "same direction only".
 #pragma once
 #include <cstdint>
 #include <string>
@@ -56,11 +61,11 @@ struct ClaimEvidence {
   double mean_b = 0;
   double own_half = 0;                         // h_sim, mean over the studies
   double difference = 0, difference_half = 0;  // b - a over the studies; of a ratio margin ln(b / a)
-  double effect = 0;                           // d_z of people, mean over the studies; NaN where people did one of the two
+  double effect = 0;  // d_z of people, mean over the studies; NaN where people did one of the two
 };
 
-// "follows", "would mostly look the same", "same direction only", "reversed", "does not follow: 1.4 times", "can't be told", "calibration",
-// "too few studies", "not run", "-".
+// "follows", "would mostly look the same", "same direction only", "reversed", "does not follow: 1.4 times", "can't be
+// told", "calibration", "too few studies", "not run", "-".
 std::string verdictOn(const Claim& claim, const ClaimEvidence& evidence);
 
 }  // namespace pincer::tasks

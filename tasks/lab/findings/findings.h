@@ -1,11 +1,12 @@
 // findings: do the published findings of the two manipulation tasks follow from what people can feel, without tuning?
 //
-// A simulated experiment is the published design: 12 participants, two conditions, half of them in either order; each finding is judged on it
-// as on the original, by a paired t-test and Wilcoxon's signed ranks over the participants (paired_test.h). Many experiments, each with other
-// participants, tell how often it would come out significant. Controls repeat them with one thing changed; the same seeds give the same people.
+// A simulated experiment is the published design: 12 participants, two conditions, half of them in either order; each
+// finding is judged on it as on the original, by a paired t-test and Wilcoxon's signed ranks over the participants
+// (paired_test.h). Many experiments, each with other participants, tell how often it would come out significant.
+// Controls repeat them with one thing changed; the same seeds give the same people.
 //
-// Published: A. J. Doxon, dissertation, University of Utah, 2014: fewer tries with the contact location display, pickup time unchanged,
-// alignment error unchanged, alignment 7 s slower.
+// Published: A. J. Doxon, dissertation, University of Utah, 2014: fewer tries with the contact location display, pickup
+// time unchanged, alignment error unchanged, alignment 7 s slower.
 // Time-outs: person_means.h. Training is left out: these participants don't learn.
 #pragma once
 #include <functional>
@@ -58,8 +59,8 @@ struct VariantResult {
   std::vector<std::string> sessions = {};  // that it was judged by
 };
 
-// Results of the sessions of a variant's experiments; those that aren't whole are left out. No findings where none is. Throws InputError for one that
-// can't be read.
+// Results of the sessions of a variant's experiments; those that aren't whole are left out. No findings where none is.
+// Throws InputError for one that can't be read.
 VariantResult judgeVariant(const FindingsVariant& variant, const std::vector<std::string>& sessions);
 
 struct FindingsResult {
@@ -71,7 +72,8 @@ struct FindingsResult {
   bool interrupted = false;
 };
 
-// "follows", "does not follow", "in the same direction only", "too few experiments", or "-" where nothing was published.
+// "follows", "does not follow", "in the same direction only", "too few
+// experiments", or "-" where nothing was published.
 std::string verdictOn(const FindingMeasure& measure, const FindingResult& result);
 
 }  // namespace pincer::tasks

@@ -94,8 +94,8 @@ void addTimes(const std::vector<ShapeAnswer>& answers, StudyMeasures& measures) 
 
 // Of the presentations that `counts` picks.
 template <class Counts, class IsIt>
-void addConfusion(const std::string& measure, const std::vector<ShapeAnswer>& answers, const Counts& counts, const IsIt& is_it,
-                  StudyMeasures& measures) {
+void addConfusion(const std::string& measure, const std::vector<ShapeAnswer>& answers, const Counts& counts,
+                  const IsIt& is_it, StudyMeasures& measures) {
   std::map<std::int64_t, Share> people;
   for (const ShapeAnswer& a : answers) {
     if (counts(a)) people[a.person].add(is_it(a));
@@ -103,7 +103,8 @@ void addConfusion(const std::string& measure, const std::vector<ShapeAnswer>& an
   addPercents(measure, people, measures);
 }
 
-void addConfusionOf(const std::string& shown, const std::string& named, const std::vector<ShapeAnswer>& answers, StudyMeasures& measures) {
+void addConfusionOf(const std::string& shown, const std::string& named, const std::vector<ShapeAnswer>& answers,
+                    StudyMeasures& measures) {
   const auto is_it = [&](const ShapeAnswer& a) { return named == "others" ? !a.right : a.named == named; };
   const std::string name = shown + ">" + named;
   addConfusion(
@@ -133,7 +134,8 @@ void addTen(const std::vector<ShapeAnswer>& answers, StudyMeasures& measures) {
     const double mean = estimateMean(ten).mean;
     double squares = 0;
     for (const double x : ten) squares += (x - mean) * (x - mean);
-    measures.people[display ? "unevenness:cld" : "unevenness:force"] = {std::sqrt(squares / (static_cast<double>(kTen.size()) - 1))};
+    measures.people[display ? "unevenness:cld" : "unevenness:force"] = {
+        std::sqrt(squares / (static_cast<double>(kTen.size()) - 1))};
   }
 }
 

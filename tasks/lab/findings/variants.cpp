@@ -12,14 +12,16 @@ const std::vector<FindingsVariant>& findingsVariants() {
   using Study = ManipulationStudy;
   static const std::vector<FindingsVariant> variants = {
       {"primary", "rational participants, the same speed in both conditions", [](Study&) {}},
-      {"simple", "the simple strategy in place of the rational one", [](Study& s) { s.people.strategy = Strategy::kSimple; }},
+      {"simple", "the simple strategy in place of the rational one",
+       [](Study& s) { s.people.strategy = Strategy::kSimple; }},
       {"speed-rule", "secondary analysis: with the CLD people move at 32/74 of their speed",
        [](Study& s) { s.people.cld_speed = kSpeedRule; }},
       {"infinite-noise", "control: tactor places are felt with infinite noise; no effect may remain",
        [](Study& s) { s.people.limits.tactor_sd = kDeaf; }},
       {"frozen-tactor", "control: the tactors stand still in both conditions; no effect may remain",
        [](Study& s) { s.frozen_tactor = true; }},
-      {"slip-cue-only", "control: of a tactor people feel only that it runs while they hold something, and then grip harder",
+      {"slip-cue-only",
+       "control: of a tactor people feel only that it runs while they hold something, and then grip harder",
        [](Study& s) { s.people.limits.tactor_use = TactorUse::kSlip; }},
       {"slow-without-information", "control: infinite noise, and with the CLD people move at 32/74 of their speed",
        [](Study& s) {

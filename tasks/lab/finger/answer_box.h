@@ -1,5 +1,5 @@
-// answer_box: keys that a person pressed, from the thread that has the keyboard to the tick, one per tick. Neither waits for the other; keys beyond
-// 16 that no tick has taken yet are dropped.
+// answer_box: keys that a person pressed, from the thread that has the keyboard to the tick, one per tick. Neither
+// waits for the other; keys beyond 16 that no tick has taken yet are dropped.
 #pragma once
 #include <array>
 #include <atomic>

@@ -1,4 +1,5 @@
-// finger_host: who does the trials with one finger and who watches them. Empty functions: nobody does, and simulated participants do them.
+// finger_host: who does the trials with one finger and who watches them. Empty functions: nobody
+// does, and simulated participants do them.
 #pragma once
 #include <functional>
 #include <memory>
@@ -30,7 +31,8 @@ struct FingerHost {
   // False: the person has left.
   std::function<bool(const StudyPage& page)> show;
   AskPerson ask;  // a question of the survey
-  // Asks the operator whether forces may come on: before the first trial, and before the one after a fault. False ends the session.
+  // Asks the operator whether forces may come on: before the first trial, and before the
+  // one after a fault. False ends the session.
   std::function<bool(const std::string& why)> arm;
   // Only this one of the study's participants, from 0; absent: all of them.
   std::optional<std::int64_t> person;

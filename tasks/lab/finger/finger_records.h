@@ -1,4 +1,5 @@
-// finger_records: what one finger's devices said to a tick, and where it led, as a record, there and back; and what a trial knew of the finger.
+// finger_records: what one finger's devices said to a tick, and where it led, as a record, there and
+// back; and what a trial knew of the finger.
 #pragma once
 #include "pincer/tasks/lab/finger/worn_finger.h"
 #include "pincer/tasks/run/records.h"

@@ -18,11 +18,19 @@ constexpr double kFingerMoves = 5e-3;      // slower, it rests [m/s]
 constexpr double kTactorMoves = 1e-3;      // likewise [m/s]
 constexpr std::int64_t kTactorTicks = 20;  // over which its speed is taken: one count of the encoder is then 0.04 mm/s
 constexpr double kIsRaised = 5e-3;         // so far off the surface a person's finger is raised [m]
-constexpr std::size_t kMostEvents = 1024;  // more keys than a trial takes; further ones are dropped rather than allocated in the tick
+// more keys than a trial takes; further ones are dropped rather than allocated in the tick
+constexpr std::size_t kMostEvents = 1024;
 
-constexpr std::array<const char*, 10> kChosen = {
-    "",           "you chose 1", "you chose 2", "you chose 3", "you chose 4", "you chose 5", "you chose 6", "you chose 7", "you chose 8",
-    "you chose 9"};
+constexpr std::array<const char*, 10> kChosen = {"",
+                                                 "you chose 1",
+                                                 "you chose 2",
+                                                 "you chose 3",
+                                                 "you chose 4",
+                                                 "you chose 5",
+                                                 "you chose 6",
+                                                 "you chose 7",
+                                                 "you chose 8",
+                                                 "you chose 9"};
 
 }  // namespace
 
@@ -30,7 +38,8 @@ Pose movedBase(const Pose& X_WD, const ArmBase& base) {
   return {quatFromRotationVector({0, 0, base.turn}) * X_WD.q, X_WD.p + base.offset_W};
 }
 
-FingerTrial::FingerTrial(const FingerTrialSetup& setup, WornFinger& finger, StudySink& sink) : asked_(setup), finger_(finger), sink_(sink) {
+FingerTrial::FingerTrial(const FingerTrialSetup& setup, WornFinger& finger, StudySink& sink)
+    : asked_(setup), finger_(finger), sink_(sink) {
   entered_places_.reserve(static_cast<std::size_t>(setup.intervals));
   if (isPersons()) events_.reserve(kMostEvents);
 }
@@ -65,7 +74,8 @@ bool FingerTrial::tick(double servo_time) {
   if (isCounted()) count(dt);
   const FingerDeed deed = finger_.apply(outputs_, cue_, now);
   const OneFingerAction action = hear(deed);
-  if (action.enters && entered_places_.size() < entered_places_.capacity()) entered_places_.push_back(finger_.tactorPlace());
+  if (action.enters && entered_places_.size() < entered_places_.capacity())
+    entered_places_.push_back(finger_.tactorPlace());
   advance(action, now);
   record(deed, now, took);
   return stage_ != Stage::kOver && finger_.more();
@@ -222,8 +232,13 @@ void FingerTrial::note(const char* kind, int key) {
 void FingerTrial::finish() {
   for (const Event& event : events_) {
     const bool enter = event.key == devices::kKeyEnter, shown = event.key > ' ' && event.key < 127;
-    const std::string key = enter ? "Enter" : shown ? std::string(1, static_cast<char>(event.key)) : fmt::format("key {}", event.key);
-    sink_.event({asked_.trial, event.time, event.kind, event.key != 0 ? key : std::string(event.kind) == "fault" ? fault() : ""});
+    const std::string key = enter   ? "Enter"
+                            : shown ? std::string(1, static_cast<char>(event.key))
+                                    : fmt::format("key {}", event.key);
+    sink_.event({asked_.trial, event.time, event.kind,
+                 event.key != 0                       ? key
+                 : std::string(event.kind) == "fault" ? fault()
+                                                      : ""});
   }
 }
 
@@ -248,7 +263,9 @@ FingerTold FingerTrial::told() const {
   told.shows_pad = !told.hidden || finger_.wear().draws_touch || on_screen;
   if (on_screen && !has_entered_) told.target = asked_.target;
   const bool ready = stage_ == Stage::kPrepare || stage_ == Stage::kPause;
-  told.stage = ready ? "wait for the tone" : stage_ == Stage::kInterval ? (two ? (shown_ == 0 ? "first" : "second") : "feel") : "answer";
+  told.stage = ready                        ? "wait for the tone"
+               : stage_ == Stage::kInterval ? (two ? (shown_ == 0 ? "first" : "second") : "feel")
+                                            : "answer";
   if (stage_ == Stage::kPrepare) {
     told.instruction = "Raise the finger, and wait";
   } else if (stage_ == Stage::kPause) {
@@ -259,7 +276,8 @@ FingerTold FingerTrial::told() const {
                                      : asked_.texts.feel.c_str();
   } else if (stage_ == Stage::kAnswer) {
     told.instruction = asked_.texts.question.c_str();
-    if (chosen_ > 0 && chosen_ < static_cast<int>(kChosen.size())) told.stage = kChosen[static_cast<std::size_t>(chosen_)];
+    if (chosen_ > 0 && chosen_ < static_cast<int>(kChosen.size()))
+      told.stage = kChosen[static_cast<std::size_t>(chosen_)];
   } else {
     told.stage = "over";
   }

@@ -1,5 +1,6 @@
-// finger_trial: one trial with one finger, tick by tick: one thing is felt, or two one after the other, and somebody answers. The same code for
-// simulated participants and people, for simulated devices, a mouse and real ones; what is felt is the task's.
+// finger_trial: one trial with one finger, tick by tick: one thing is felt, or two one after the other,
+// and somebody answers. The same code for simulated participants and people, for simulated devices, a
+// mouse and real ones; what is felt is the task's.
 //
 //   prepare   the gate ramps up, the finger is off the surface
 //   interval  tone; the finger explores; then a pause and the next
@@ -9,7 +10,8 @@
 //
 //   kWhich   the finger raised, Enter ends an interval; then 1 or 2 says which, Enter that it is meant
 //   kName    one of the keys 1, 2, ... names what is felt, at once and for good
-//   kMatch   Enter, while touching: here and now is what is meant; an interval before the last ends when the finger is raised after that
+//   kMatch   Enter, while touching: here and now is what is meant; an interval before the last
+//            ends when the finger is raised after that
 //
 // tick() allocates nothing; events are kept and handed over at the end (finish).
 #pragma once
@@ -35,10 +37,11 @@ struct TrialTexts {
 
 struct FingerTrialSetup {
   std::int64_t trial = 0;
-  int stride = 50;                 // every stride-th tick is recorded
-  double timeout = 120;            // of simulated participants [s]
-  double wait = 0;                 // until the first tone, at least [s]
-  bool counts_from_touch = false;  // duration and contact are counted from the first touch to the answer; else over the intervals
+  int stride = 50;       // every stride-th tick is recorded
+  double timeout = 120;  // of simulated participants [s]
+  double wait = 0;       // until the first tone, at least [s]
+  // duration and contact are counted from the first touch to the answer; else over the intervals
+  bool counts_from_touch = false;
   int intervals = 1;
   TrialQuestion question = TrialQuestion::kWhich;
   int choices = 2;                 // of the keys that answer

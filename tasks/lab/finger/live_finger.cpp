@@ -45,7 +45,8 @@ FingerDeed LiveFinger::apply(const FingerOutputs& outputs, Cue cue, double) {
   devices_.arm(0).commandForce(outputs.f_D);
   if (devices::PressureDisplay* pressure = devices_.pressure(0)) pressure->press(outputs.f_D.norm());
   devices::TactileCommand command = outputs.tactile;
-  if (!command.parked) command.place_L.x() = devices::transmitted(transmission_, command.place_L.x(), transmission_state_);
+  if (!command.parked)
+    command.place_L.x() = devices::transmitted(transmission_, command.place_L.x(), transmission_state_);
   if (devices::TactileDisplay* display = devices_.display(0)) display->command(command);
   tactor_place_ = inputs_.tactile.place_L.value_or(outputs.tactile.place_L).x();
   return {{}, keys_.take()};

@@ -1,4 +1,5 @@
-// live_finger: a real arm and display on a person's finger, in a trial with one finger; the keys are the window's or the terminal's.
+// live_finger: a real arm and display on a person's finger, in a trial with one finger; the
+// keys are the window's or the terminal's.
 #pragma once
 #include "pincer/tasks/lab/finger/answer_box.h"
 #include "pincer/tasks/lab/finger/worn_finger.h"

@@ -1,4 +1,5 @@
-// mouse_finger: a finger on a mouse, with a simulated contact location display that nobody feels; the keys are the window's.
+// mouse_finger: a finger on a mouse, with a simulated contact location display that
+// nobody feels; the keys are the window's.
 #pragma once
 #include "pincer/devices/window/mouse_hand.h"
 #include "pincer/tasks/lab/finger/answer_box.h"
@@ -15,7 +16,9 @@ class MouseFinger final : public WornFinger {
   void advanceTo(double now) override;
   const FingerInputs& sample() override;
   FingerDeed apply(const FingerOutputs& outputs, Cue cue, double now) override;
-  void setTransmission(const devices::VirtualTransmission& transmission) override { display_.setTransmission(transmission); }
+  void setTransmission(const devices::VirtualTransmission& transmission) override {
+    display_.setTransmission(transmission);
+  }
   double tactorPlace() const override { return tactor_place_; }
 
   devices::MouseHand& hand() { return hand_; }

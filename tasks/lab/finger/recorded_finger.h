@@ -1,4 +1,5 @@
-// recorded_finger: the finger of a person's trial as it was recorded, to do it again: each tick is given to the bit what it was given then.
+// recorded_finger: the finger of a person's trial as it was recorded, to do it again: each tick is
+// given to the bit what it was given then.
 #pragma once
 #include <vector>
 

@@ -20,7 +20,10 @@ devices::SimOneDofCld simulatedDisplay(double finger_radius) {
 }
 
 SimulatedFinger::SimulatedFinger(const FingerPlace& place, OneFingerObserver& observer)
-    : q_WD_(place.X_WD.q), observer_(observer), arm_(fingerArm(place)), display_(simulatedDisplay(place.finger_radius)) {
+    : q_WD_(place.X_WD.q),
+      observer_(observer),
+      arm_(fingerArm(place)),
+      display_(simulatedDisplay(place.finger_radius)) {
   wear_.arm = arm_.capabilities();
   // The hand is on the arm before the first tick.
   const OneFingerAction action = observer_.act({arm_.sample(), Vec3::Zero(), display_.sample()}, 0, Cue::kNone);

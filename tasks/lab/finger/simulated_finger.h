@@ -18,7 +18,9 @@ class SimulatedFinger final : public WornFinger {
   void advanceTo(double now) override;
   const FingerInputs& sample() override;
   FingerDeed apply(const FingerOutputs& outputs, Cue cue, double now) override;
-  void setTransmission(const devices::VirtualTransmission& transmission) override { display_.setTransmission(transmission); }
+  void setTransmission(const devices::VirtualTransmission& transmission) override {
+    display_.setTransmission(transmission);
+  }
   double tactorPlace() const override { return tactor_place_; }
 
  private:

@@ -37,7 +37,8 @@ bool fillForm(const SurveyForm& form, const std::vector<SurveyRecord>& answered,
     if (isAnswered(form, q, answered)) continue;
     const auto answer = askOne(q, k + 1, form.questions.size(), ask);
     if (!answer) return false;
-    keep({form.participant, form.moment, q.item.name, q.task, q.condition, questionText(q), answer->text, answer->value});
+    keep({form.participant, form.moment, q.item.name, q.task, q.condition, questionText(q), answer->text,
+          answer->value});
   }
   return true;
 }

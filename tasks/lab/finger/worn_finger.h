@@ -1,5 +1,5 @@
-// worn_finger: whoever wears the one finger of a trial, and the devices on it: a simulated participant, a person on a mouse or on real devices, a
-// recording of one.
+// worn_finger: whoever wears the one finger of a trial, and the devices on it: a simulated participant, a person on a
+// mouse or on real devices, a recording of one.
 #pragma once
 #include "pincer/devices/cld/virtual_transmission.h"
 #include "pincer/tasks/lab/participants/one_finger.h"
@@ -47,7 +47,8 @@ class WornFinger {
   virtual FingerDeed apply(const FingerOutputs& outputs, Cue cue, double now) = 0;
   // Lies between the place wanted and the place commanded, from the next tick on.
   virtual void setTransmission(const devices::VirtualTransmission& transmission) = 0;
-  // The tactor's place along the finger [m of arc]: the true one, of a simulated participant; the measured one, of a person.
+  // The tactor's place along the finger [m of arc]: the true one, of a simulated
+  // participant; the measured one, of a person.
   virtual double tactorPlace() const = 0;
   // False: nothing more will come, the trial ends here.
   virtual bool more() const { return true; }

@@ -10,7 +10,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kCopyAngleSd = 0.03;  // noise on a copied hypothesis [rad]
-constexpr double kDrawnShare = 0.7;    // of the prior's variance: in the means drawn; the rest in each hypothesis's covariance
+// of the prior's variance: in the means drawn; the rest in each hypothesis's covariance
+constexpr double kDrawnShare = 0.7;
 
 Vec2 along(double angle) {
   const auto [sin, cos] = math::sinCos(angle);
@@ -53,7 +54,8 @@ void FlatBelief::begin(const FlatModel& model, Random& random) {
 
 namespace {
 
-// One scalar reading of x ~ N(mean, P): innovation e = reading - expected, its slope along x, its noise. Returns its log likelihood.
+// One scalar reading of x ~ N(mean, P): innovation e = reading - expected, its slope along
+// x, its noise. Returns its log likelihood.
 template <class Mean, class Covariance>
 double kalmanUpdate(Mean& mean, Covariance& P, double e, const Mean& slope, double sd) {
   const Mean P_slope = P * slope;
@@ -84,7 +86,8 @@ double FlatBelief::update(Hypothesis& h, const FlatPercept& p, double half) cons
   }
   if (p.place) {
     const double expected = model_.place_gain * wrapped(at.normal + turned - p.pad);
-    log += kalmanUpdate(h.x, h.P, wrapped(*p.place - p.pad - expected), Vec4(model_.place_gain * turning), model_.place_sd);
+    log += kalmanUpdate(h.x, h.P, wrapped(*p.place - p.pad - expected), Vec4(model_.place_gain * turning),
+                        model_.place_sd);
   }
   return log;
 }

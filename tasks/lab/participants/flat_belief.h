@@ -1,16 +1,19 @@
 // flat_belief: what a hand that pinches an upright cylinder knows about its flat, and about where its own fingers are.
 //
-//   hypothesis    theta, direction of the flat; a, b: what both fingertips, and one against the other, are beside where they feel
+//   hypothesis    theta, direction of the flat; a, b: what both fingertips, and one
+//                 against the other, are beside where they feel
 //   fingertip i   c_i = f_i + a -+ b/2,  f_i felt, c_i true, from the axis [m, horizontal]
-//   likelihood    N(dist(c_i; theta) - r + pressed; span_sd) N(felt push - normal(c_i; theta); push_sd) N(felt place - normal; place_sd), i = 1, 2
+//   likelihood    N(dist(c_i; theta) - r + pressed; span_sd) N(felt push - normal(c_i; theta); push_sd)
+//                 N(felt place - normal; place_sd), i = 1, 2
 //
 // dist and normal: of the circle of radius R whose part beyond d is cut off, from outside.
 //
-// The distances are sharp (1 mm where the hand is 7 mm off), so hypotheses drawn blindly would nearly all be wrong: with as many as can be
-// afforded a bootstrap filter is sure of directions that are 60 degrees off. Each hypothesis is therefore a direction with a Gaussian over
-// x = (a, b), whose mean is drawn from a part of the prior and whose covariance is the rest, updated by the extended Kalman filter; its weight
-// takes the likelihood of each innovation. Source: J. H. Kotecha, P. M. Djuric, "Gaussian sum particle filtering", IEEE Trans. Signal Process.
-// 51(10), 2003, 2602-2612; weighing and resampling: weighing.h. Directions begin evenly spaced.
+// The distances are sharp (1 mm where the hand is 7 mm off), so hypotheses drawn blindly would nearly all be wrong:
+// with as many as can be afforded a bootstrap filter is sure of directions that are 60 degrees off. Each hypothesis is
+// therefore a direction with a Gaussian over x = (a, b), whose mean is drawn from a part of the prior and whose
+// covariance is the rest, updated by the extended Kalman filter; its weight takes the likelihood of each innovation.
+// Source: J. H. Kotecha, P. M. Djuric, "Gaussian sum particle filtering", IEEE Trans. Signal Process. 51(10), 2003,
+// 2602-2612; weighing and resampling: weighing.h. Directions begin evenly spaced.
 #pragma once
 #include <array>
 #include <optional>
@@ -32,9 +35,10 @@ struct FlatModel {
 
 // One finger's news in a pinch. Directions about W's z axis [rad], of the surface's outward normal.
 struct FlatPercept {
-  Vec2 p_felt = Vec2::Zero();   // fingertip's centre from where the axis is told to be [m]
-  double pressed = 0;           // how deep the fingertip is in the surface, which gives way [m]
-  double pad = 0;               // from the fingertip's middle against its pad: the normal that a touch in the pad's middle means [rad]
+  Vec2 p_felt = Vec2::Zero();  // fingertip's centre from where the axis is told to be [m]
+  double pressed = 0;          // how deep the fingertip is in the surface, which gives way [m]
+  // from the fingertip's middle against its pad: the normal that a touch in the pad's middle means [rad]
+  double pad = 0;
   std::optional<double> push;   // of the felt push
   std::optional<double> place;  // of the felt contact place
 };
@@ -70,8 +74,8 @@ class FlatBelief {
   std::vector<double> logs_;
 };
 
-// Distance from the cut circle to a point outside of it, the direction of its normal there [rad], and how fast that turns when the point moves
-// along the surface [rad/m]. `c` from the axis [m].
+// Distance from the cut circle to a point outside of it, the direction of its normal there [rad], and how fast that
+// turns when the point moves along the surface [rad/m]. `c` from the axis [m].
 struct CutCircle {
   double distance = 0, normal = 0, bend = 0;
 };

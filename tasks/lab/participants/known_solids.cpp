@@ -80,14 +80,16 @@ KnownSolid KnownSolid::sphere(double radius) {
 
 KnownSolid KnownSolid::cylinder(double radius, double half_length) {
   KnownSolid solid;
-  solid.form_ = Turned{{{-half_length, -radius}, {half_length, -radius}, {half_length, radius}, {-half_length, radius}}};
+  solid.form_ =
+      Turned{{{-half_length, -radius}, {half_length, -radius}, {half_length, radius}, {-half_length, radius}}};
   return solid;
 }
 
 KnownSolid KnownSolid::cone(double radius, double half_length, double side) {
   ConvexPolygon meridian{{half_length, 0}, {-half_length, radius}, {-half_length, -radius}};
   if (side < 0) {
-    for (Vec2& corner : meridian) corner = -corner;  // half a turn: still counter-clockwise, and symmetric about rho = 0
+    // half a turn: still counter-clockwise, and symmetric about rho = 0
+    for (Vec2& corner : meridian) corner = -corner;
   }
   KnownSolid solid;
   solid.form_ = Turned{meridian};
@@ -116,7 +118,9 @@ KnownSolid KnownSolid::pyramid(int sides, double radius, double half_length, dou
   return solid;
 }
 
-Vec3 KnownSolid::nearestOn(const Ball& ball, const Vec3& p) { return p.norm() <= ball.radius ? p : Vec3(ball.radius * p.normalized()); }
+Vec3 KnownSolid::nearestOn(const Ball& ball, const Vec3& p) {
+  return p.norm() <= ball.radius ? p : Vec3(ball.radius * p.normalized());
+}
 
 Vec3 KnownSolid::nearestOn(const Turned& turned, const Vec3& p) {
   return fromMeridian(nearestIn(turned.meridian, meridianOf(p)), radialOf(p));
@@ -143,7 +147,9 @@ Vec3 KnownSolid::nearestOn(const Planes& planes, const Vec3& p) {
   return x;
 }
 
-Vec3 KnownSolid::normalWithin(const Ball&, const Vec3& p) { return p.norm() > 0 ? Vec3(p.normalized()) : Vec3::UnitZ(); }
+Vec3 KnownSolid::normalWithin(const Ball&, const Vec3& p) {
+  return p.norm() > 0 ? Vec3(p.normalized()) : Vec3::UnitZ();
+}
 
 Vec3 KnownSolid::normalWithin(const Turned& turned, const Vec3& p) {
   return fromMeridian(shallowestOf(turned.meridian, meridianOf(p)).n, radialOf(p));
@@ -156,7 +162,8 @@ Vec3 KnownSolid::normalWithin(const Prism& prism, const Vec3& p) {
 }
 
 Vec3 KnownSolid::normalWithin(const Planes& planes, const Vec3& p) {
-  return std::max_element(planes.begin(), planes.end(), [&](const Plane& a, const Plane& b) { return a.n.dot(p) - a.d < b.n.dot(p) - b.d; })
+  return std::max_element(planes.begin(), planes.end(),
+                          [&](const Plane& a, const Plane& b) { return a.n.dot(p) - a.d < b.n.dot(p) - b.d; })
       ->n;
 }
 

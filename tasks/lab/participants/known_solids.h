@@ -1,10 +1,13 @@
-// known_solids: the seven solids of shape identification as somebody imagines them who knows their names: their forms exactly, their sizes
-// roughly (shape_explorer.h), not which way they lie. Behind the wall: made here, not from what is rendered.
+// known_solids: the seven solids of shape identification as somebody imagines them who knows their
+// names: their forms exactly, their sizes roughly (shape_explorer.h), not which way they lie. Behind the
+// wall: made here, not from what is rendered.
 //
-//   turned solids   nearest point in the meridian plane (x, rho), rho = |(y, z)|, of a polygon; prisms: of a polygon in (y, z), and x clamped
+//   turned solids   nearest point in the meridian plane (x, rho), rho = |(y, z)|, of a polygon;
+//                   prisms: of a polygon in (y, z), and x clamped
 //   pyramid         the projection onto the intersection of half-spaces n_k . x <= d_k
 //
-// Frame: x the axis, which lies from left to right, y away, z up; the middle of the length is the origin. Radius 40 mm, 80 mm long, the cube
+// Frame: x the axis, which lies from left to right, y away, z up; the middle of the length is the
+// origin. Radius 40 mm, 80 mm long, the cube
 // 56.6 mm. Projection: J. P. Boyle, R. L. Dykstra, Lecture Notes in Statistics 37, 1986.
 #pragma once
 #include <array>
@@ -16,7 +19,8 @@
 namespace pincer::tasks {
 
 constexpr int kSolids = 7;
-constexpr std::array<const char*, kSolids> kSolidNames{"cone", "cylinder", "cube", "sphere", "tetrahedron", "octagon", "triangle"};
+constexpr std::array<const char*, kSolids> kSolidNames{"cone",        "cylinder", "cube",    "sphere",
+                                                       "tetrahedron", "octagon",  "triangle"};
 
 // Corners counter-clockwise.
 using ConvexPolygon = std::vector<Vec2>;
@@ -25,7 +29,8 @@ class KnownSolid {
  public:
   static KnownSolid sphere(double radius);
   static KnownSolid cylinder(double radius, double half_length);
-  static KnownSolid cone(double radius, double half_length, double side);  // the tip on the right (side = 1) or left (-1)
+  // the tip on the right (side = 1) or left (-1)
+  static KnownSolid cone(double radius, double half_length, double side);
   // The first corner at `turn` from up, about the axis [rad].
   static KnownSolid prism(int sides, double radius, double half_length, double turn);
   static KnownSolid pyramid(int sides, double radius, double half_length, double turn, double side);

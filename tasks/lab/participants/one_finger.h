@@ -1,4 +1,5 @@
-// one_finger: somebody who touches with one finger and answers a question. Behind the wall, as all participants (participant.h).
+// one_finger: somebody who touches with one finger and answers a question. Behind the
+// wall, as all participants (participant.h).
 #pragma once
 #include "pincer/tasks/lab/participants/participant.h"
 

@@ -1,8 +1,10 @@
-// participant: somebody who does an experiment, simulated. A controller behind a wall: files of this folder see devices/, the standard
-// library, and nothing else of pincer, so that no participant can look into the world (tests/unit/tasks/lab/participant_wall.cpp).
+// participant: somebody who does an experiment, simulated. A controller behind a wall: files of this folder see
+// devices/, the standard library, and nothing else of pincer, so that no participant can look into the world
+// (tests/unit/tasks/lab/participant_wall_test.cpp).
 //
-// Each millisecond a participant is given what its body can feel (a Percept) and answers where its fingers pull (a HandAction).
-// Frames: W as the instructions describe the set-up; D_i the base of finger i's arm; F the finger; L its pad (devices/cld).
+// Each millisecond a participant is given what its body can feel (a Percept) and answers where its
+// fingers pull (a HandAction). Frames: W as the instructions describe the set-up; D_i the base of finger
+// i's arm; F the finger; L its pad (devices/cld).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -44,7 +46,8 @@ struct FingerCue {
   Vec3 radial_F{0, 1, 0};       // second axis of L
 };
 
-// Facts that a participant is told before a trial, the same in every condition: all of it is learnt in training, none of it is measured.
+// Facts that a participant is told before a trial, the same in every condition: all of it is
+// learnt in training, none of it is measured.
 struct TrialCues {
   std::uint64_t seed = 0;  // of everything that varies from trial to trial within the participant
   std::array<FingerCue, kHandFingers> fingers;
@@ -55,7 +58,7 @@ struct TrialCues {
   double target_angle = 0;          // where the flat is to face, about W's z axis [rad]
   double mass = 0.075;              // of the object [kg]
   double lift_height = 0.050;       // to lift it at least so high [m]
-  double dish_radius = 0.15;        // of curvature of the dish that the object lies in, its lowest point at W's origin [m]
+  double dish_radius = 0.15;  // of curvature of the dish that the object lies in, its lowest point at W's origin [m]
 };
 
 // The participant's present doing; for records and for the judge, who counts as squeezes only what was meant to lift.
@@ -63,9 +66,11 @@ enum class HandPhase : std::uint8_t { kListen, kReach, kClose, kRead, kSqueeze, 
 constexpr int kHandPhases = 10;
 const char* nameOf(HandPhase phase);
 
-// One deliberate reading of the senses, as the participant would report it: kept for the analysis beside the truth, which it doesn't know.
+// One deliberate reading of the senses, as the participant would report it: kept for the analysis
+// beside the truth, which it doesn't know.
 //   kind      what was read: "place" (offset of the object's centre from the middle of the fingertips, W [m]),
-//             "flat" (direction of the flat about the axis: (angle, spread, 0) [rad]), "grip" ((mean of the two pushes, 0, 0) [N])
+//             "flat" (direction of the flat about the axis: (angle, spread, 0) [rad]),
+//             "grip" ((mean of the two pushes, 0, 0) [N])
 //   percept   what the senses said; NaN where they said nothing
 //   estimate  what the participant believes after it
 struct HandReading {

@@ -21,22 +21,26 @@ const char* nameOf(TactorUse use) {
 }
 
 std::string describe(const ParticipantModel& model) {
-  std::string json = fmt::format("{{\"strategy\": \"{}\", \"tactor_use\": \"{}\"", nameOf(model.strategy), nameOf(model.limits.tactor_use));
-  forEachParameter(model,
-                   [&](const char* name, double value, double, double, const char*) { json += fmt::format(", \"{}\": {}", name, value); });
+  std::string json = fmt::format("{{\"strategy\": \"{}\", \"tactor_use\": \"{}\"", nameOf(model.strategy),
+                                 nameOf(model.limits.tactor_use));
+  forEachParameter(model, [&](const char* name, double value, double, double, const char*) {
+    json += fmt::format(", \"{}\": {}", name, value);
+  });
   return json + "}";
 }
 
 std::string hashOf(const ParticipantModel& model) { return fmt::format("{:016x}", fnv1a(describe(model))); }
 
-std::unique_ptr<Participant> makeParticipant(const ParticipantModel& model, HandTask task, std::uint64_t seed, bool with_cld) {
+std::unique_ptr<Participant> makeParticipant(const ParticipantModel& model, HandTask task, std::uint64_t seed,
+                                             bool with_cld) {
   HandRanges hands = model.hands;
   if (with_cld) {
     hands.speed_min *= model.cld_speed;
     hands.speed_max *= model.cld_speed;
   }
   const bool rational = model.strategy == Strategy::kRational;
-  if (task == HandTask::kPickup) return std::make_unique<ScriptedPickup>(seed, model.pickup, model.limits, hands, rational);
+  if (task == HandTask::kPickup)
+    return std::make_unique<ScriptedPickup>(seed, model.pickup, model.limits, hands, rational);
   return std::make_unique<ScriptedAlignment>(seed, !rational, model.alignment, model.limits, hands);
 }
 

@@ -1,8 +1,8 @@
-// participant_model: everything that makes simulated participants what they are, in one value: frozen, written down and hashed before the
-// first trial of a study. No parameter may be chosen for what comes out.
+// participant_model: everything that makes simulated participants what they are, in one value: frozen, written down and
+// hashed before the first trial of a study. No parameter may be chosen for what comes out.
 //
-//   forEachParameter(model, visit)   calls visit(name, value, low, high, unit) for each number; the study file, the session and the hash
-//                                    follow it
+//   forEachParameter(model, visit)   calls visit(name, value, low, high, unit) for each number; the study
+//                                    file, the session and the hash follow it
 // Sources and choices: body.h and the strategies' headers.
 #pragma once
 #include <memory>
@@ -84,7 +84,9 @@ std::string hashOf(const ParticipantModel& model);
 
 enum class HandTask : std::uint8_t { kPickup, kAlignment };
 
-// The person of `seed`, for a trial of a task. `with_cld`: only what the person knows anyway, whether the tactors are on.
-std::unique_ptr<Participant> makeParticipant(const ParticipantModel& model, HandTask task, std::uint64_t seed, bool with_cld);
+// The person of `seed`, for a trial of a task. `with_cld`: only what the person
+// knows anyway, whether the tactors are on.
+std::unique_ptr<Participant> makeParticipant(const ParticipantModel& model, HandTask task, std::uint64_t seed,
+                                             bool with_cld);
 
 }  // namespace pincer::tasks

@@ -1,13 +1,17 @@
 // place_belief: what a hand that pinches a round object knows about where it pinches, and how slippery the object is.
 //
-//   hypothesis  o, offset of the object's centre from the middle of the fingertips, across the pinch [m]; mu, friction [-]
-//   holds       Phi((atan mu - asin(|o|/L))/0.1) Phi((2 mu g/W - 1)/0.15),  L = tip radius + half width, g grip, W weight [N]
+//   hypothesis  o, offset of the object's centre from the middle of the
+//               fingertips, across the pinch [m]; mu, friction [-]
+//   holds       Phi((atan mu - asin(|o|/L))/0.1) Phi((2 mu g/W - 1)/0.15),  L = tip radius + half
+//                                                                           width, g grip, W weight [N]
 //   place read  N(p - gain o; place_sd) per axis: the pads' tactors
-//   push read   N(t + o/|o| max(0, asin(|o|/L) - atan mu); push_sd) per axis: t, the mean push's tilt from the pinch line. Inside the friction
-//               cone the push lies along the line of the contacts whatever the offset is, and tells nothing
+//   push read   N(t + o/|o| max(0, asin(|o|/L) - atan mu); push_sd) per axis: t, the mean push's tilt from
+//               the pinch line. Inside the friction cone the push lies along the line of the contacts
+//               whatever the offset is, and tells nothing
 //   failed      1 - holds
 //   let go      o_1 += N(0; rolls_sd): the object rolls in its dish before it is pinched again
-//   height      o_2 = N(0; height_sd): a finger stood on the dish, and the pinch was put to where the object's middle is above it
+//   height      o_2 = N(0; height_sd): a finger stood on the dish, and the pinch was put
+//               to where the object's middle is above it
 //
 // Bootstrap particle filter (weighing.h). The two softnesses, 0.1 rad and 0.15, are ours.
 #pragma once
@@ -38,9 +42,10 @@ class PlaceBelief {
   void letGo(Random& random);
   void heightFound(Random& random);
 
-  Vec2 offset() const;                                                 // mean of o [m]
-  double holds(const Vec2& shift, double grip) const;                  // expected, after a shift
-  Vec2 bestShift(double grip, double farthest, Random& random) const;  // of the mean, and of some hypotheses, the one that holds best
+  Vec2 offset() const;                                 // mean of o [m]
+  double holds(const Vec2& shift, double grip) const;  // expected, after a shift
+  // of the mean, and of some hypotheses, the one that holds best
+  Vec2 bestShift(double grip, double farthest, Random& random) const;
 
  private:
   struct Hypothesis {

@@ -33,7 +33,8 @@ bool PlaceObserver::roll(double place, double goal, double tolerance) {
   const double left = goal - place;
   if (std::abs(left) <= tolerance) return now_ - held_ >= limits_.hold_time;
   held_ = now_;
-  const double finger_way = -left * path().radius / cues_.finger_radius;  // away from the body the contact goes proximally
+  // away from the body the contact goes proximally
+  const double finger_way = -left * path().radius / cues_.finger_radius;
   const double speed = std::clamp(finger_way / limits_.correction_time, -body_.speed, body_.speed);
   angle_ += kPlaceTick * speed / path().radius;
   return false;
@@ -52,7 +53,8 @@ OneFingerAction PlaceObserver::act(const FingerPercept& finger, double time, Cue
   if (phase_ == Phase::kLower && t >= limits_.lower_time) enter(Phase::kRoll);
   if (phase_ == Phase::kRoll && finger.tactile.valid && finger.tactile.place_L) {
     const double place = finger.tactile.place_L->x();
-    action.enters = interval_ == 0 ? roll(place, cues_.target, cues_.tolerance) : roll(place, match_, limits_.match_tolerance);
+    action.enters =
+        interval_ == 0 ? roll(place, cues_.target, cues_.tolerance) : roll(place, match_, limits_.match_tolerance);
     if (action.enters && interval_ == 0) remember(place);
     if (action.enters) enter(Phase::kRaise);
   }

@@ -65,7 +65,8 @@ Vec3 Random::normal3() {
 }
 
 std::uint64_t Random::below(std::uint64_t bound) {
-  const std::uint64_t threshold = (0 - bound) % bound;  // 2^64 mod bound: values under it would favour the small results
+  // 2^64 mod bound: values under it would favour the small results
+  const std::uint64_t threshold = (0 - bound) % bound;
   std::uint64_t value = bits();
   while (value < threshold) value = bits();
   return value % bound;

@@ -2,7 +2,8 @@
 //
 //   x(t) = a + (b - a) s(t/T),   s(x) = 10 x^3 - 15 x^4 + 6 x^5
 //
-// Source: T. Flash, N. Hogan, "The coordination of arm movements", J. Neurosci. 5(7), 1985, eq. 1. Mean speed |b - a|/T, peak 1.875 times it.
+// Source: T. Flash, N. Hogan, "The coordination of arm movements", J. Neurosci. 5(7), 1985, eq. 1.
+// Mean speed |b - a|/T, peak 1.875 times it.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -39,8 +40,8 @@ struct Reach {
 
 // The movement at mean speed `speed` > 0 [m/s] of the finger that has further to go.
 inline Reach reach(const Posture& from, const Posture& to, double start, double speed) {
-  const double distance =
-      (to.centre_W - from.centre_W).norm() + std::abs(to.half - from.half) + std::max(from.half, to.half) * std::abs(to.angle - from.angle);
+  const double distance = (to.centre_W - from.centre_W).norm() + std::abs(to.half - from.half) +
+                          std::max(from.half, to.half) * std::abs(to.angle - from.angle);
   return {from, to, start, distance / speed};
 }
 

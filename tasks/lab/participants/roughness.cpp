@@ -13,7 +13,12 @@ std::array<BandPower, 2> skinBands() {
 }  // namespace
 
 RoughnessSense::RoughnessSense(const SkinLimits& limits, double tactor_weight)
-    : limits_(limits), weight_(tactor_weight), skin_(limits), along_(skinBands()), across_(skinBands()), tactor_(skinBands()) {}
+    : limits_(limits),
+      weight_(tactor_weight),
+      skin_(limits),
+      along_(skinBands()),
+      across_(skinBands()),
+      tactor_(skinBands()) {}
 
 void RoughnessSense::feelPush(const Vec2& f, bool counts) {
   const Vec2 u = skin_.pushed(f);
@@ -34,10 +39,12 @@ void RoughnessSense::clear() {
 void RoughnessSense::read(std::size_t interval, Random& random) {
   for (std::size_t b = 0; b < kBands; ++b) {
     const double threshold = b == 0 ? limits_.slow_threshold : limits_.quick_threshold;
-    const FeltMotion push = feltMotion(math::hypot(along_[b].rms(), across_[b].rms()), threshold, limits_.difference, random);
+    const FeltMotion push =
+        feltMotion(math::hypot(along_[b].rms(), across_[b].rms()), threshold, limits_.difference, random);
     const FeltMotion tactor = feltMotion(tactor_[b].rms(), threshold, limits_.difference, random);
     const double w = tactor_[b].rms() > 0 ? weight_ : 0;
-    readings_[interval][b] = {(1 - w) * push.felt + w * tactor.felt, math::hypot((1 - w) * push.sigma, w * tactor.sigma)};
+    readings_[interval][b] = {(1 - w) * push.felt + w * tactor.felt,
+                              math::hypot((1 - w) * push.sigma, w * tactor.sigma)};
   }
 }
 

@@ -1,12 +1,14 @@
 // roughness: how rough a curve felt under one finger, as one percept of two senses.
 //
-//   a_sb      root mean square of what is felt of the skin's motion by sense s (push, tactor) in band b (slow, quick), with its noise (skin.h)
+//   a_sb      root mean square of what is felt of the skin's motion by sense s (push, tactor) in band
+//             b (slow, quick), with its noise (skin.h)
 //   r_b   =   (1 - w) a_push,b + w a_tactor,b,      s_b^2 = (1 - w)^2 sigma_push,b^2 + w^2 sigma_tactor,b^2
 //   rougher:  the interval in which r is larger, by the sign of   sum_b (r_b(2) - r_b(1)) / sqrt(s_b(1)^2 + s_b(2)^2)
 //
 //   w  weight of touch [-]; of a parked tactor, which tells nothing, 0
-// One percept, not the better of two independent senses: the tactor rests on the very skin that feels the push. That w is the same whatever is
-// shown is ours, and so is its size (choice); it decides how far touch outweighs force (docs/experiments.md).
+// One percept, not the better of two independent senses: the tactor rests on the very skin that feels the
+// push. That w is the same whatever is shown is ours, and so is its size (choice); it decides how far
+// touch outweighs force (docs/experiments.md).
 #pragma once
 #include <array>
 

@@ -34,8 +34,8 @@ FlatModel flatModelOf(const TrialCues& cues, const SensingLimits& limits) {
 
 }  // namespace
 
-ScriptedAlignment::ScriptedAlignment(std::uint64_t seed, bool simple, const ScriptedAlignmentOptions& options, const SensingLimits& limits,
-                                     const HandRanges& ranges)
+ScriptedAlignment::ScriptedAlignment(std::uint64_t seed, bool simple, const ScriptedAlignmentOptions& options,
+                                     const SensingLimits& limits, const HandRanges& ranges)
     : ScriptedHand(seed, limits, ranges, options.settle_time), simple_(simple), options_(options) {
   Random person(seedFor(seed, 0x6d6f6e69746f72));  // "monitor": not the stream that made the hands
   target_shared_ = limits.target_shared_sd * person.normal();
@@ -107,8 +107,10 @@ void ScriptedAlignment::observe() {
   }
   belief_.observe(pinch, random_);
   belief_.turned(0, options_.probe_sd, random_);
-  const std::size_t finger = pinch[0].p_felt.norm() < pinch[1].p_felt.norm() ? 0 : 1;  // the one that is more likely on the flat
-  reading_ = HandReading{"flat", Vec3(place[finger], push[finger], 0), Vec3(believedDirection(), believedSpread(), 0), ""};
+  // the one that is more likely on the flat
+  const std::size_t finger = pinch[0].p_felt.norm() < pinch[1].p_felt.norm() ? 0 : 1;
+  reading_ =
+      HandReading{"flat", Vec3(place[finger], push[finger], 0), Vec3(believedDirection(), believedSpread(), 0), ""};
 }
 
 double ScriptedAlignment::believedDirection() const { return simple_ ? simple_direction_ : belief_.direction(); }
@@ -180,6 +182,8 @@ Vec3 ScriptedAlignment::centre_W() const {
   return cues_.place_W + Vec3(axis.x(), axis.y(), 0);
 }
 
-double ScriptedAlignment::openHalf() const { return cues_.fingers[0].tip_radius + cues_.half_width + options_.clearance; }
+double ScriptedAlignment::openHalf() const {
+  return cues_.fingers[0].tip_radius + cues_.half_width + options_.clearance;
+}
 
 }  // namespace pincer::tasks

@@ -1,19 +1,24 @@
-// scripted_alignment: a participant who finds the flat of an upright cylinder between index finger and thumb, without seeing it, and turns it
-// towards the monitor.
+// scripted_alignment: a participant who finds the flat of an upright cylinder between index finger and thumb, without
+// seeing it, and turns it towards the monitor.
 //
 //   listen - reach - close - read -+- (probe elsewhere: open - reach - close - read)
 //                                  +- (turn: open - reach - close - squeeze - turn - open, then probe again)
 //                                  '- answer - return - rest
 //
-// probe    pinch the cylinder at an angle, hold still and read: where the fingertips are, where the pushes come from, and where the contacts
-//          are on the pads (where the tactors stand still there is nothing to read). Three pinches first; more while the direction of the
-//          flat is known no better than `sure`; each at the angle that brings a finger nearest to where the flat is believed to be
-// turn     pinch, squeeze to `turn_grip`, move the fingers about the axis, at most from one end of the hand's reach to the other
-// answer   when the flat is nearer to where the monitor is felt than the direction of the flat is known, or than `close_enough`
-// The belief is one over the flat and over the hand's own misplacement (flat_belief.h). The same plan in every condition.
+// probe    pinch the cylinder at an angle, hold still and read: where the fingertips are, where the pushes come from,
+//          and where the contacts are on the pads (where the tactors stand still there is nothing to read). Three
+//          pinches first; more while the direction of the flat is known no better than `sure`; each at the angle that
+//          brings a finger nearest to where the flat is believed to be
+// turn     pinch, squeeze to `turn_grip`, move the fingers about the axis, at most from
+//          one end of the hand's reach to the other
+// answer   when the flat is nearer to where the monitor is felt than the direction of
+//          the flat is known, or than `close_enough`
+// The belief is one over the flat and over the hand's own misplacement
+// (flat_belief.h). The same plan in every condition.
 //
-// `simple`: no belief over the misplacement; the flat is where a finger came nearest to where the axis is told to be, or, where a tactor
-// moved, where the pads of the fingers said the normal was; one sweep of probes after every turn, two turns at most.
+// `simple`: no belief over the misplacement; the flat is where a finger came nearest to where the axis is
+// told to be, or, where a tactor moved, where the pads of the fingers said the normal was; one sweep of
+// probes after every turn, two turns at most.
 #pragma once
 #include "pincer/tasks/lab/participants/flat_belief.h"
 #include "pincer/tasks/lab/participants/scripted_hand.h"
@@ -39,9 +44,10 @@ struct ScriptedAlignmentOptions {
 
 class ScriptedAlignment final : public ScriptedHand {
  public:
-  // `seed` makes the participant: hands, speed, and where the monitor is felt. What varies between trials comes from the trial's own seed.
-  ScriptedAlignment(std::uint64_t seed, bool simple, const ScriptedAlignmentOptions& options = {}, const SensingLimits& limits = {},
-                    const HandRanges& ranges = {});
+  // `seed` makes the participant: hands, speed, and where the monitor is felt. What varies
+  // between trials comes from the trial's own seed.
+  ScriptedAlignment(std::uint64_t seed, bool simple, const ScriptedAlignmentOptions& options = {},
+                    const SensingLimits& limits = {}, const HandRanges& ranges = {});
 
   void begin(const TrialCues& cues) override;
 

@@ -4,7 +4,8 @@
 
 namespace pincer::tasks {
 
-ScriptedHand::ScriptedHand(std::uint64_t seed, const SensingLimits& limits, const HandRanges& ranges, double settle_time)
+ScriptedHand::ScriptedHand(std::uint64_t seed, const SensingLimits& limits, const HandRanges& ranges,
+                           double settle_time)
     : limits_(limits), body_(drawBody(ranges, seed)), random_(seed), settle_time_(settle_time) {}
 
 void ScriptedHand::beginHand(const TrialCues& cues) {

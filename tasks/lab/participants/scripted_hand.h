@@ -1,9 +1,10 @@
-// scripted_hand: what the scripted participants share: a hand of two fingers that goes through phases, pulled by its muscles towards places, which
-// feels with the limits of body.h.
+// scripted_hand: what the scripted participants share: a hand of two fingers that goes through phases, pulled by its
+// muscles towards places, which feels with the limits of body.h.
 //
 // Each millisecond: feel, then what the phase does (a script overrides what it has of them), then pulls
 //
-//   p_i = centre + m_i (t) -+ half u(angle)      m_i  misplacement of the finger, come to within `settle_time`;  u  the pinch's axis, turned about z
+//   p_i = centre + m_i (t) -+ half u(angle)      m_i  misplacement of the finger, come to within
+//                                                     `settle_time`;  u  the pinch's axis, turned about z
 #pragma once
 #include "pincer/tasks/lab/participants/body.h"
 #include "pincer/tasks/lab/participants/participant.h"
@@ -64,7 +65,8 @@ class ScriptedHand : public Participant {
   void doPhase();
   devices::HandPull pullOf(int finger) const;
 
-  double settle_time_;  // in which the hand, put to its place by the arms, drifts to where it believes that place to be [s]
+  // in which the hand, put to its place by the arms, drifts to where it believes that place to be [s]
+  double settle_time_;
 };
 
 }  // namespace pincer::tasks

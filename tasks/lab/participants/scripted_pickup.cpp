@@ -16,7 +16,8 @@ PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, cons
   model.lever = radius + cues.half_width;
   model.weight = cues.mass * options.gravity;
   model.placement_sd = std::max(limits.placement_sd, 1e-3);
-  model.place_sd = std::max(kBothFingers * model.lever * math::hypot(limits.tactor_sd / radius, limits.orientation_sd), 5e-4);
+  model.place_sd =
+      std::max(kBothFingers * model.lever * math::hypot(limits.tactor_sd / radius, limits.orientation_sd), 5e-4);
   model.place_gain = limits.tactor_bias;
   model.rolls_sd = options.object_rolls_sd;
   model.height_sd = std::max(limits.placement_between_sd, 1e-3);
@@ -96,13 +97,14 @@ void ScriptedPickup::readRationally(const std::optional<Vec3>& offset_W) {
   if (shifts) shiftBy(along(shift));
 }
 
-// Expected failures are (1 - P)/P when every attempt holds with chance P; each costs a squeeze, half a lift and back, the reflex, and the
-// way to the next attempt.
+// Expected failures are (1 - P)/P when every attempt holds with chance P; each costs a squeeze, half a lift and back,
+// the reflex, and the way to the next attempt.
 bool ScriptedPickup::pays(const Vec2& shift) const {
   const double there = belief_.holds(shift, wanted_grip_), here = belief_.holds(Vec2::Zero(), wanted_grip_);
-  const double shift_time =
-      (options_.clearance + shift.norm()) / body_.speed + options_.clearance / options_.close_speed + limits_.reading_time;
-  const double failure_time = wanted_grip_ / options_.squeeze_rate + cues_.lift_height / body_.speed + limits_.reflex_time + shift_time;
+  const double shift_time = (options_.clearance + shift.norm()) / body_.speed +
+                            options_.clearance / options_.close_speed + limits_.reading_time;
+  const double failure_time =
+      wanted_grip_ / options_.squeeze_rate + cues_.lift_height / body_.speed + limits_.reflex_time + shift_time;
   return ((1 - here) / here - (1 - there) / there) * failure_time > shift_time;
 }
 
@@ -125,7 +127,8 @@ void ScriptedPickup::say(const char* kind, const Vec3& percept, const Vec3& esti
 void ScriptedPickup::squeeze() {
   if (lostIt()) return;
   posture_.half = std::max(posture_.half - options_.squeeze_rate / meanStiffness() * dt_, 0.0);
-  if (felt_factor_ * touch_.grip() < wanted_grip_ && posture_.half > 0) return;  // at 0 the hand can't close any further
+  // at 0 the hand can't close any further
+  if (felt_factor_ * touch_.grip() < wanted_grip_ && posture_.half > 0) return;
   say("grip", Vec3(felt_factor_ * touch_.grip(), 0, 0), Vec3(wanted_grip_, 0, 0), "lift");
   raise(cues_.lift_height + options_.lift_margin);
 }
@@ -152,7 +155,9 @@ void ScriptedPickup::tightenWhereItSlips() {
   for (double* half : {&reach_.from.half, &reach_.to.half, &posture_.half}) *half = std::max(*half - closer, 0.0);
 }
 
-void ScriptedPickup::raise(double height) { enterReach({posture_.centre_W + height * Vec3::UnitZ(), posture_.half}, HandPhase::kLift); }
+void ScriptedPickup::raise(double height) {
+  enterReach({posture_.centre_W + height * Vec3::UnitZ(), posture_.half}, HandPhase::kLift);
+}
 
 bool ScriptedPickup::lostIt() {
   if (touch_.lossTime() < limits_.reflex_time) return false;
@@ -195,7 +200,8 @@ void ScriptedPickup::believe(const Vec3& place_W) {
   const Vec3 shift_W = place_W - cues_.place_W;
   const Vec3 along_W = shift_W.dot(axis_W_) * axis_W_;
   const Vec3 across_W = shift_W - along_W;
-  believed_W_ = cues_.place_W + along_W + across_W * std::min(1.0, options_.farthest_shift / std::max(across_W.norm(), 1e-9));
+  believed_W_ =
+      cues_.place_W + along_W + across_W * std::min(1.0, options_.farthest_shift / std::max(across_W.norm(), 1e-9));
 }
 
 Posture ScriptedPickup::besideThePinch() const { return {believed_W_ + step_W_, touchingHalf() + options_.clearance}; }

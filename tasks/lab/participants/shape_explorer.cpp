@@ -7,14 +7,15 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kFeltPush = 0.3;        // while following, a weaker push means that the finger has left the surface [N]
-constexpr double kSinkSpeed = 0.05;      // then the aim goes in [m/s]
-constexpr double kRoundOff = 1e-12;      // keeps a variance of 0 positive [m^2]
-constexpr double kLeast = 1e-12;         // a likelihood: no reading rules a solid out for ever
-constexpr double kGiveWay = 20;          // else the aim goes to where the finger would feel the wanted push, at this rate [1/s]
-constexpr double kLeastReach = 0.02;     // nearer the middle the angle goes no faster [m]
-constexpr double kLeastProgress = 0.1;   // of the finger's speed: however steep the surface, the sweep goes on
-constexpr double kLeastInPlane = 0.1;    // a push further than this from the sweep's plane (as a cosine) doesn't say where the surface goes
+constexpr double kFeltPush = 0.3;    // while following, a weaker push means that the finger has left the surface [N]
+constexpr double kSinkSpeed = 0.05;  // then the aim goes in [m/s]
+constexpr double kRoundOff = 1e-12;  // keeps a variance of 0 positive [m^2]
+constexpr double kLeast = 1e-12;     // a likelihood: no reading rules a solid out for ever
+constexpr double kGiveWay = 20;  // else the aim goes to where the finger would feel the wanted push, at this rate [1/s]
+constexpr double kLeastReach = 0.02;    // nearer the middle the angle goes no faster [m]
+constexpr double kLeastProgress = 0.1;  // of the finger's speed: however steep the surface, the sweep goes on
+// a push further than this from the sweep's plane (as a cosine) doesn't say where the surface goes
+constexpr double kLeastInPlane = 0.1;
 constexpr double kSmallestSize = 0.3;    // of a solid against what is imagined: smaller none is believed [-]
 constexpr double kLeastForeAft = 0.1;    // of a normal: the angle of one that points aside tells nothing
 constexpr double kTellsNothing = 0.01;   // chance that a reading of the tactor is of something else (choice)
@@ -62,8 +63,12 @@ void ShapeExplorer::begin(const ShapeCues& cues) {
 
 // Sides as far as the ends are felt; away, and less towards the body, where the display's wires bend away.
 const ShapeExplorer::Sweep& ShapeExplorer::sweep() const {
-  static const std::array<Sweep, kSweepsOfRound> kSweeps{
-      {{Vec3::UnitX(), -1.4}, {Vec3::UnitX(), 1.4}, {Vec3::UnitX(), 0}, {Vec3::UnitY(), 1.2}, {Vec3::UnitY(), -0.9}, {Vec3::UnitY(), 0}}};
+  static const std::array<Sweep, kSweepsOfRound> kSweeps{{{Vec3::UnitX(), -1.4},
+                                                          {Vec3::UnitX(), 1.4},
+                                                          {Vec3::UnitX(), 0},
+                                                          {Vec3::UnitY(), 1.2},
+                                                          {Vec3::UnitY(), -0.9},
+                                                          {Vec3::UnitY(), 0}}};
   return kSweeps[static_cast<std::size_t>(sweeps_ % kSweepsOfRound)];
 }
 
@@ -71,7 +76,9 @@ double ShapeExplorer::direction() const { return sweep().target < from_ ? -1 : 1
 
 Vec3 ShapeExplorer::ray() const { return math::cos(angle_) * Vec3::UnitZ() + math::sin(angle_) * sweep().side; }
 
-Vec3 ShapeExplorer::along() const { return direction() * (math::cos(angle_) * sweep().side - math::sin(angle_) * Vec3::UnitZ()); }
+Vec3 ShapeExplorer::along() const {
+  return direction() * (math::cos(angle_) * sweep().side - math::sin(angle_) * Vec3::UnitZ());
+}
 
 double ShapeExplorer::tilt() const { return sweep().side.y() > 0 ? -tilt_share_ * angle_ : 0; }
 
@@ -88,7 +95,8 @@ OneFingerAction ShapeExplorer::act(const FingerPercept& finger, double time, Cue
   OneFingerAction action;
   if (finger.tactile.valid && finger.tactile.place_L) {
     if (!first_place_) first_place_ = finger.tactile.place_L->x();
-    tactor_moves_ = tactor_moves_ || std::abs(finger.tactile.place_L->x() - *first_place_) > limits_.common.tactor_moves;
+    tactor_moves_ =
+        tactor_moves_ || std::abs(finger.tactile.place_L->x() - *first_place_) > limits_.common.tactor_moves;
   }
   if (phase_ == Phase::kListen && cue == Cue::kStart) enter(Phase::kApproach);
   if (phase_ == Phase::kApproach) {
@@ -137,7 +145,8 @@ void ShapeExplorer::endSweep() {
   if (sweeps_ >= limits_.most_rounds * kSweepsOfRound || sureness() > limits_.sure) enter(Phase::kAnswer);
 }
 
-// Along the surface, and to the depth at which it pushes as hard as is wanted. `p_W` from the middle, `n_W` where the push goes, unit.
+// Along the surface, and to the depth at which it pushes as hard as is wanted. `p_W` from the
+// middle, `n_W` where the push goes, unit.
 void ShapeExplorer::keepTo(const Vec3& p_W, const Vec3& n_W, double dt) {
   const Vec3 across = ray().cross(along()).cross(n_W);
   const Vec3 onwards = across.norm() > kLeastInPlane ? Vec3(across.normalized()) : along();
@@ -184,7 +193,8 @@ ShapeExplorer::Meeting ShapeExplorer::meet(const SolidBelief& belief, const Know
   return m;
 }
 
-// The misplacement is the same in all readings of a trial: taken for noise of each it would make them tell more than they do.
+// The misplacement is the same in all readings of a trial: taken for noise of each
+// it would make them tell more than they do.
 void ShapeExplorer::believe(SolidBelief& b, const KnownSolid& solid, const Reading& reading) const {
   const Meeting m = meet(b, solid, reading.p_W);
   Gain H;
@@ -199,7 +209,8 @@ void ShapeExplorer::believe(SolidBelief& b, const KnownSolid& solid, const Readi
   if (reading.shown) believeTactor(b, solid, reading);
 }
 
-// Near an edge, or on a small round solid, a slightly other place has another direction: that much the tactor tells of the place instead.
+// Near an edge, or on a small round solid, a slightly other place has another direction: that
+// much the tactor tells of the place instead.
 void ShapeExplorer::believeTactor(SolidBelief& b, const KnownSolid& solid, const Reading& reading) const {
   const Meeting m = meet(b, solid, reading.p_W);
   Vec3 slope;
@@ -223,9 +234,10 @@ void ShapeExplorer::believeTactor(SolidBelief& b, const KnownSolid& solid, const
   b.covariance -= trust / S * spread * spread.transpose();
 }
 
-// Of the felt push: where the finger is on the solid is known as badly as it was felt, and near an edge another place has another direction.
-// The mean over six places spread as the place is once the finger is known to touch.
-double ShapeExplorer::likelihoodOf(const Reading& reading, const SolidBelief& b, const KnownSolid& solid, const Meeting& m) const {
+// Of the felt push: where the finger is on the solid is known as badly as it was felt, and near an edge another place
+// has another direction. The mean over six places spread as the place is once the finger is known to touch.
+double ShapeExplorer::likelihoodOf(const Reading& reading, const SolidBelief& b, const KnownSolid& solid,
+                                   const Meeting& m) const {
   Eigen::Matrix<double, 3, kUnknowns> J;
   J << Mat3::Identity(), m.at;
   const Mat3 spread = J * b.covariance * J.transpose() + square(limits_.place_sd) * Mat3::Identity();

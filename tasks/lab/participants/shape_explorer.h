@@ -1,35 +1,45 @@
-// shape_explorer: somebody who feels a solid that lies with its axis from left to right, with one finger that points away, and says which of
-// seven it is.
+// shape_explorer: somebody who feels a solid that lies with its axis from left to right, with one finger that
+// points away, and says which of seven it is.
 //
 //   listen - approach the top - sweeps over it - answer
 //
-// sweeps   left to its end, right to the other, back to the middle: whether it ends round, in a point or in a face; then away, towards the
-//          body, back. So did all people (Doxon 2014, ch. 2). Two rounds at the most; the answer may come at the middle of any.
-// follow   the hand's aim a goes across the push that is felt, direction n, in the plane of the sweep, at the finger's speed, and along n to the
-//          depth at which a finger at p is pushed as hard as is wanted:   n . (p - a) = press / k,  k the hand's stiffness; where nothing is
-//          felt it sinks. The finger points away and is only tilted: by a share, drawn per person, of what would keep its pad square to a ball.
+// sweeps   left to its end, right to the other, back to the middle: whether it ends round, in a point or in a
+//          face; then away, towards the body, back. So did all people (Doxon 2014, ch. 2). Two rounds at the most;
+//          the answer may come at the middle of any.
+// follow   the hand's aim a goes across the push that is felt, direction n, in the plane of the sweep,
+//          at the finger's speed, and along n to the
+//          depth at which a finger at p is pushed as hard as is wanted:   n . (p - a) = press / k,  k the
+//                                                                         hand's stiffness; where nothing is
+//          felt it sinks. The finger points away and is only tilted: by a share, drawn per person, of
+//          what would keep its pad square to a ball.
 // read     every reading time, while something is felt: the place of the fingertip and the direction of the surface,
 //
 //   place      p + m + sigma_p n                 m constant in a trial: placement_sd
 //   push       its direction, direction_sd per axis
-//   tactor     where it moves: its place on the pad, s = clamp(r (a - tilt), travel), a the fore-aft angle of the contact, with sigma / b along the
-//              finger and the felt tilt's error, constant in a trial; b the felt over the true place: known, as to the other participants
-//              (flat_belief.h). The travel's ends are known from training: a place felt there tells that the contact is there or beyond
+//   tactor     where it moves: its place on the pad, s = clamp(r (a - tilt), travel), a the fore-aft angle of the
+//              contact, with sigma / b along the finger and the felt tilt's error, constant in a trial; b the felt over
+//              the true place: known, as to the other participants (flat_belief.h). The travel's ends are known from
+//              training: a place felt there tells that the contact is there or beyond
 //
-// believe  each way each solid may lie (known_solids.h) has its own Gaussian over m and the solid's size c, whose name is known and whose size
-//          isn't, by a Kalman filter: were it this one, the finger would be its tip's radius r away from it,
+// believe  each way each solid may lie (known_solids.h) has its own Gaussian over m and the solid's size
+//          c, whose name is known and whose size isn't, by a Kalman filter: were it this one, the finger
+//          would be its tip's radius r away from it,
 //
 //            y = c |q/c - nearest(q/c)| - r,   H = (n, n . nearest(q/c)),   S = H' P H + sigma_p^2
 //
-//          q the felt place less the mean of m, n the solid's normal there; and it gets  -y^2/2S - ln(S)/2 + ln E[exp(-angle(n, push)^2 / 2 s^2)]
-//          per reading, E over where the finger may be on it. Likewise the fore-aft angle, by another step of the filter:
+//          q the felt place less the mean of m, n the solid's normal there; and it gets  -y^2/2S - ln(S)/2 + ln
+//          E[exp(-angle(n, push)^2 / 2 s^2)] per reading, E over where the finger may be on it. Likewise the
+//          fore-aft angle, by another step of the filter:
 //
-//            y = s - clamp(r (angle fore-aft of n - tilt), travel),   H by differences,   S = H' P H + (s_s / |n fore-aft|)^2
+//            y = s - clamp(r (angle fore-aft of n - tilt), travel),   H by differences,   S = H' P
+//                                                                     H + (s_s / |n fore-aft|)^2
 //
 //          but that one reading in a hundred tells nothing.
 //
-//          A name is as likely as all its ways together. The answer is the likeliest name, and exploring ends when it is sure.
-// The reading's own noise sigma_p, the sizes' error and the wanted sureness are ours (choice); the rest is in body.h. The same plan in every condition.
+//          A name is as likely as all its ways together. The answer is the likeliest
+//          name, and exploring ends when it is sure.
+// The reading's own noise sigma_p, the sizes' error and the wanted sureness are ours (choice); the rest is in
+// body.h. The same plan in every condition.
 #pragma once
 #include <array>
 #include <optional>
@@ -42,7 +52,8 @@ namespace pincer::tasks {
 
 struct ShapeLimits {
   SensingLimits common;
-  double place_sd = 4e-3;             // sigma_p, of one reading of the finger's place, per axis [m] (choice: as between two fingers)
+  // sigma_p, of one reading of the finger's place, per axis [m] (choice: as between two fingers)
+  double place_sd = 4e-3;
   double size_sd = 0.15;              // of a solid's size, relative (choice: its name was read, it was never seen)
   double press = 0.8;                 // wanted push of the surface [N] (choice)
   double sure = 0.95;                 // probability of the answer that ends exploring (choice)
@@ -113,7 +124,8 @@ class ShapeExplorer final : public OneFingerObserver {
   void believe(SolidBelief& belief, const KnownSolid& solid, const Reading& reading) const;
   void believeTactor(SolidBelief& belief, const KnownSolid& solid, const Reading& reading) const;
   double tactorAngleFor(const Vec3& n_W, double tilt) const;
-  double likelihoodOf(const Reading& reading, const SolidBelief& belief, const KnownSolid& solid, const Meeting& meeting) const;
+  double likelihoodOf(const Reading& reading, const SolidBelief& belief, const KnownSolid& solid,
+                      const Meeting& meeting) const;
   void readTactor(const FingerPercept& finger, Reading& reading);
   std::array<double, kSolids> chances() const;  // of the names
   const Sweep& sweep() const;

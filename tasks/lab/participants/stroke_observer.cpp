@@ -8,9 +8,9 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kObserverTick = 1e-3;                // [s]
-constexpr double kMiddle = 0.1;                       // a stroke's first and last tenth are the turn's, not the surface's
-constexpr double kIsochronousWay = 0.1;               // [m]
+constexpr double kObserverTick = 1e-3;   // [s]
+constexpr double kMiddle = 0.1;          // a stroke's first and last tenth are the turn's, not the surface's
+constexpr double kIsochronousWay = 0.1;  // [m]
 constexpr std::uint64_t kSensitivity = 1, kWays = 2;  // parts of a person's seed
 
 StrokeLimits strokeLimitsOf(StrokeLimits limits, double noise) {
@@ -34,7 +34,8 @@ double evenWay(double t, double whole, double ramp) {
 }  // namespace
 
 StrokeObserver::StrokeObserver(std::uint64_t seed, const StrokeLimits& limits, const HandRanges& ranges)
-    : limits_(strokeLimitsOf(limits, math::exp(limits.sensitivity_spread * Random(seedFor(seed, kSensitivity)).normal()))),
+    : limits_(
+          strokeLimitsOf(limits, math::exp(limits.sensitivity_spread * Random(seedFor(seed, kSensitivity)).normal()))),
       body_(drawBody(ranges, seed)),
       random_(seed),
       roughness_(limits_.skin, limits_.tactor_weight),

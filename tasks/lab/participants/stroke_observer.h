@@ -1,16 +1,22 @@
-// stroke_observer: somebody who strokes a curve along one finger, twice, and says which of the two felt rougher, had more play or more delay. Behind the
-// wall: it is given samples of arm and display, the push on the finger and tones, nothing else.
+// stroke_observer: somebody who strokes a curve along one finger, twice, and says which of the two felt
+// rougher, had more play or more delay. Behind the wall: it is given samples of arm and display, the
+// push on the finger and tones, nothing else.
 //
-//   rougher   wait - lower - strokes to and fro - raise - read; one percept of push and tactor (roughness.h), while a stroke is in its middle
-//   looser    each stroke ends in a stop; the finger goes back a small way of its choosing, stops, and feels both ways (stroke_senses.h)
+//   rougher   wait - lower - strokes to and fro - raise - read; one percept of push and tactor
+//             (roughness.h), while a stroke is in its middle
+//   looser    each stroke ends in a stop; the finger goes back a small way of its choosing,
+//             stops, and feels both ways (stroke_senses.h)
 //   later     each stroke ends in a stop, quick, at which the tactor's motion is felt while the finger rests
-//   onset     each stroke begins from rest on one side and ends with the finger raised: the tactor's start is felt during the hand's own motion
+//   onset     each stroke begins from rest on one side and ends with the finger raised: the tactor's
+//             start is felt during the hand's own motion
 //
-// It moves a hand of its own impedance along the circle that it was told and presses lightly: the height of its aim over the circle follows the felt push
-// slowly, h' = (push - press) / (k tau), k the hand's stiffness. Strokes are of minimum jerk, or, where a stop is felt, of even speed with ramps. The
-// longer the way the faster, but not in proportion: mean speed = own speed sqrt(way / 0.1 m) (isochrony; P. Viviani, G. McCollum, Neuroscience 10,
-// 1983, from memory; the root is a choice). Where the arm lets the finger turn, it rolls: its pitch is a share of its angle on the circle, drawn per
-// person, so that the tactor goes further than the finger takes it. What is marked (choice) is ours; none was changed to meet an outcome.
+// It moves a hand of its own impedance along the circle that it was told and presses lightly: the height of its aim
+// over the circle follows the felt push slowly, h' = (push - press) / (k tau), k the hand's stiffness. Strokes are of
+// minimum jerk, or, where a stop is felt, of even speed with ramps. The longer the way the faster, but not in
+// proportion: mean speed = own speed sqrt(way / 0.1 m) (isochrony; P. Viviani, G. McCollum, Neuroscience 10, 1983,
+// from memory; the root is a choice). Where the arm lets the finger turn, it rolls: its pitch is a share of its angle
+// on the circle, drawn per person, so that the tactor goes further than the finger takes it. What is marked (choice)
+// is ours; none was changed to meet an outcome.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,8 +32,9 @@ struct StrokeLimits {
   SkinLimits skin;
   SensingLimits common;
   LagLimits lag;
-  double tactor_weight = 0.75;                 // w, of touch beside force (roughness.h) [-] (choice)
-  double sensitivity_spread = 0.2;             // people differ: all noise times exp(spread n), n drawn once per participant (choice)
+  double tactor_weight = 0.75;  // w, of touch beside force (roughness.h) [-] (choice)
+  // people differ: all noise times exp(spread n), n drawn once per participant (choice)
+  double sensitivity_spread = 0.2;
   double press = 1.0;                          // wanted push of the surface [N] (choice)
   double press_time = 0.2;                     // tau [s] (choice)
   double lower_time = 0.4, raise_time = 0.3;   // [s] (choice)
@@ -47,7 +54,8 @@ struct StrokeCues {
   Vec3 p_WD = Vec3::Zero();      // arm base [m]
   Vec3 centre_W = Vec3::Zero();  // of the circle on which the fingertip's centre goes, in the plane x = centre_W.x [m]
   double radius = 0.12;          // of that circle [m]
-  double half_angle = 0.4;       // strokes run between -half_angle and +half_angle from +z towards +y, of who doesn't roll the finger [rad]
+  // strokes run between -half_angle and +half_angle from +z towards +y, of who doesn't roll the finger [rad]
+  double half_angle = 0.4;
   double tactor_gain = 0.02 / 0.12;  // way of the tactor per way of the finger's centre, of who doesn't roll it [-]
   bool rolls = false;                // the arm lets the finger turn
   int strokes = 4;                   // per interval

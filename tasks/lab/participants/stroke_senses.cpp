@@ -51,7 +51,8 @@ void DelaySense::take(double lag) {
 
 void DelaySense::read(std::size_t interval, bool masked, Random& random) {
   const double lag = strokes_ > 0 ? sum_ / strokes_ : 0;
-  felt_[interval] = lag + (masked ? limits_.masking : 1) * math::hypot(limits_.time_sd, limits_.difference * lag) * random.normal();
+  felt_[interval] =
+      lag + (masked ? limits_.masking : 1) * math::hypot(limits_.time_sd, limits_.difference * lag) * random.normal();
 }
 
 }  // namespace pincer::tasks

@@ -2,14 +2,17 @@
 //
 //   play    after a stop the finger goes back a small way w; the tactor, if it has play, lags behind:
 //           lost = g (w + sigma_w n) - (d + sqrt(sigma_d^2 + (c d)^2) n'),     the mean over an interval's stops
-//           w, d   own way and the tactor's [m];  g  tactor's way per finger's, known from training [-];  n, n'  normal, one per stop
-//   delay   time between hand and tactor, the mean over an interval's strokes;  felt = lag + m sqrt(sigma_t^2 + (c lag)^2) n, one per interval
+//           w, d   own way and the tactor's [m];  g  tactor's way per finger's, known from
+//                                                    training [-];  n, n'  normal, one per stop
+//   delay   time between hand and tactor, the mean over an interval's strokes;  felt = lag + m
+//           sqrt(sigma_t^2 + (c lag)^2) n, one per interval
 //           stop   from the hand's stop to the last motion of the tactor that is felt, while the finger rests; m = 1
 //           onset  from the hand's start to the tactor's first motion that is felt, masked by the hand's own; m > 1
 //
-// Sources: sigma_w from the difference limen of short lengths between the fingers, 1.0 mm (N. I. Durlach et al., Percept. Psychophys. 46(1), 1989;
-// from memory); sigma_d from 0.17 mm between successive places on a fingerpad (J. M. Loomis, cited in Doxon 2014, ch. 3); sigma_t from 60 ms
-// (S. Okamoto, M. Konyo, S. Saga, S. Tadokoro, IEEE Trans. Haptics 2(2), 2009, 73-84); each taken as the point of 75 % right answers in two
+// Sources: sigma_w from the difference limen of short lengths between the fingers, 1.0 mm (N. I. Durlach et
+// al., Percept. Psychophys. 46(1), 1989; from memory); sigma_d from 0.17 mm between successive places on a
+// fingerpad (J. M. Loomis, cited in Doxon 2014, ch. 3); sigma_t from 60 ms (S. Okamoto, M. Konyo, S. Saga, S.
+// Tadokoro, IEEE Trans. Haptics 2(2), 2009, 73-84); each taken as the point of 75 % right answers in two
 // intervals: / 0.954. c and m are ours (choice).
 #pragma once
 #include <array>
@@ -32,7 +35,8 @@ class PlaySense {
  public:
   explicit PlaySense(const LagLimits& limits) : limits_(limits) {}
   void clear();
-  void stop(double finger, double tactor);  // where both are before the finger goes back [m along the path], [m on the pad]
+  // where both are before the finger goes back [m along the path], [m on the pad]
+  void stop(double finger, double tactor);
   void back(double finger, double tactor, double gain, Random& random);  // and after it
   void read(std::size_t interval) { felt_[interval] = stops_ > 0 ? sum_ / stops_ : 0; }
   int larger() const { return felt_[1] > felt_[0] ? 2 : 1; }

@@ -93,17 +93,23 @@ std::string deviceErrorsHtml(const DeviceErrors& e) {
   if (e.samples == 0) return "";
   std::string html = "<h2>Errors of the displays, and what people notice</h2>\n<div class=\"wide\"><table>\n" +
                      htmlRow({"measure", "display", "noticed from"}, "th");
-  html += htmlRow({"place, median error [mm]", fmt::format("{:.2f}", 1e3 * e.median), fmt::format("{:.1f}", 1e3 * kPlaceLimit)}, "td");
-  html +=
-      htmlRow({"place, 95 % of errors below [mm]", fmt::format("{:.2f}", 1e3 * e.high), fmt::format("{:.1f}", 1e3 * kPlaceLimit)}, "td");
+  html += htmlRow(
+      {"place, median error [mm]", fmt::format("{:.2f}", 1e3 * e.median), fmt::format("{:.1f}", 1e3 * kPlaceLimit)},
+      "td");
+  html += htmlRow({"place, 95 % of errors below [mm]", fmt::format("{:.2f}", 1e3 * e.high),
+                   fmt::format("{:.1f}", 1e3 * kPlaceLimit)},
+                  "td");
   html += htmlRow({"samples beyond that [%]", fmt::format("{:.1f}", 100 * e.noticed), "–"}, "td");
   html += htmlRow({"lag, index finger [ms]", fmt::format("{:.0f} ± {:.1f}", 1e3 * e.lag, 0.5e3 * e.step),
                    fmt::format("{:.0f} (front end: {:.0f})", 1e3 * kDelayLimit, 1e3 * kFrontLimit)},
                   "td");
-  html += htmlRow({"what remains without the lag, root mean square [mm]", fmt::format("{:.2f}", 1e3 * e.remains), "–"}, "td");
+  html += htmlRow({"what remains without the lag, root mean square [mm]", fmt::format("{:.2f}", 1e3 * e.remains), "–"},
+                  "td");
   return html +
-         "</table></div>\n<p class=\"note\">Place told and place measured on the pad, while a finger touched and its tactor wasn't parked. "
-         "Limits: localisation and delay discrimination of Doxon (2014). What remains isn't play alone: nothing published says when it is "
+         "</table></div>\n<p class=\"note\">Place told and place measured on the pad, while a finger touched and its "
+         "tactor wasn't parked. "
+         "Limits: localisation and delay discrimination of Doxon (2014). What remains isn't play alone: nothing "
+         "published says when it is "
          "noticed.</p>\n";
 }
 

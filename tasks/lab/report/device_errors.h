@@ -1,10 +1,12 @@
 // device_errors: how far a contact location display was from what it was told, beside what people notice.
 //
 //   error  |p_wanted - p_shown| on the pad while the finger touches and the tactor isn't parked
-//   lag    the shift in 0 .. 200 ms for which mean |p_wanted(t - lag) - p_shown(t)|^2 is least, over kept samples; its root is what remains
+//   lag    the shift in 0 .. 200 ms for which mean |p_wanted(t - lag) - p_shown(t)|^2 is least,
+//          over kept samples; its root is what remains
 //
 // Limits: place 1.3 mm (mean absolute error of localisation), delay 61 ms (whole travel) and
-// 132 ms (front end): A. J. Doxon, doctoral dissertation, University of Utah, 2014. A kept sample's period is the resolution of the lag.
+// 132 ms (front end): A. J. Doxon, doctoral dissertation, University of Utah, 2014. A kept
+// sample's period is the resolution of the lag.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -30,8 +30,8 @@ double betaFraction(double x, double a, double b) {
   double f = 1, c = 1, d = 0;
   for (int k = 1; k < kMostTerms; ++k) {
     const int m = k / 2;
-    const double term =
-        k % 2 ? -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1)) : m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+    const double term = k % 2 ? -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1))
+                              : m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
     d = 1 + term * d;
     c = 1 + term / c;
     if (std::abs(d) < kSmallest) d = kSmallest;

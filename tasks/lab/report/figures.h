@@ -1,7 +1,7 @@
 // figures: the pictures of a sphere-pickup session, as gnuplot scripts with their data.
 //
-// Data files keep SI units but for what is drawn in mm (then the column says so). Colours: M. Okabe, K. Ito, "Color universal design",
-// 2008, distinguishable with any colour vision; finger 0 is the index finger, finger 1 the thumb.
+// Data files keep SI units but for what is drawn in mm (then the column says so). Colours: M. Okabe, K. Ito, "Color
+// universal design", 2008, distinguishable with any colour vision; finger 0 is the index finger, finger 1 the thumb.
 #pragma once
 #include <array>
 #include <optional>
@@ -16,7 +16,8 @@ namespace pincer::tasks {
 // A measure over friction: each trial as a dot, each cell's mean with its interval. `measure` is a place in kMeasures.
 Figure measureFigure(const SessionSummary& summary, const std::vector<TrialRecord>& trials, std::size_t measure);
 
-// The condition's trial with the median number of squeezes (of two middle ones the lower; of equals the earliest), faults left out.
+// The condition's trial with the median number of squeezes (of two middle ones the lower;
+// of equals the earliest), faults left out.
 std::optional<TrialRecord> representativeTrial(const std::vector<TrialRecord>& trials, const std::string& condition);
 
 struct TrialTrace {
@@ -26,7 +27,8 @@ struct TrialTrace {
 };
 TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial);
 
-// Over the trial's time: events, height, grip forces, each finger's friction against its limit. `trace` must hold a sample.
+// Over the trial's time: events, height, grip forces, each finger's friction
+// against its limit. `trace` must hold a sample.
 Figure trialFigure(const TrialTrace& trace);
 
 // Where the tactors were told to be on the fingerpads and where they were. `trace` must hold a sample.
@@ -35,8 +37,8 @@ Figure tactorFigure(const TrialTrace& trace);
 // "trial 7 (participant 0, µₛ 0.45)".
 std::string trialWords(const TrialRecord& trial);
 
-// Each participant in both conditions, joined by a line: squeezes and time per sphere, error and time of alignment. Nothing with fewer than
-// two participants in both.
+// Each participant in both conditions, joined by a line: squeezes and time per sphere, error and time of alignment.
+// Nothing with fewer than two participants in both.
 std::optional<Figure> peopleFigure(const SessionSummary& summary);
 
 // True unless all tactors were parked throughout the trial.
@@ -55,8 +57,8 @@ std::optional<Figure> tickFigure(const SessionReader& session);
 std::string fileNamePart(const std::string& text);
 
 namespace palette {
-constexpr const char *kBlue = "#0072B2", *kVermillion = "#D55E00", *kGreen = "#009E73", *kPurple = "#CC79A7", *kOrange = "#E69F00",
-                     *kInk = "#222222", *kGrey = "#999999";
+constexpr const char *kBlue = "#0072B2", *kVermillion = "#D55E00", *kGreen = "#009E73", *kPurple = "#CC79A7",
+                     *kOrange = "#E69F00", *kInk = "#222222", *kGrey = "#999999";
 }  // namespace palette
 
 // One colour for one meaning in all figures: conditions blue, vermillion ...; fingers green and purple.
@@ -65,7 +67,8 @@ const char* conditionColour(std::size_t condition);
 struct FingerStyle {
   const char *name, *colour;
 };
-constexpr std::array<FingerStyle, kRecordedFingers> kFingers{{{"index finger", palette::kGreen}, {"thumb", palette::kPurple}}};
+constexpr std::array<FingerStyle, kRecordedFingers> kFingers{
+    {{"index finger", palette::kGreen}, {"thumb", palette::kPurple}}};
 
 // Lines and letters that all figures share; `data` is then the figure's table, <name>.csv.
 std::string figurePrelude(const std::string& name);

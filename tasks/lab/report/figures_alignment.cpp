@@ -33,8 +33,10 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
   figure.name = "alignment";
   figure.title = "Alignment: error and time per condition";
   figure.caption =
-      "Each dot a trial: left, how far from the monitor the flat was when the participant answered; right, the time until then. "
-      "Bars: means over all trials. Open circles: time-outs. To see: few large errors make the mean; most answers lie closer.";
+      "Each dot a trial: left, how far from the monitor the flat was when the participant answered; right, the time "
+      "until then. "
+      "Bars: means over all trials. Open circles: time-outs. To see: few large errors make the mean; most answers lie "
+      "closer.";
   PlotTable table{"trial", "participant", "condition", "position", "error_deg", "time_s", "timeout", "colour"},
       means{"position", "error_deg", "time_s"};
   std::string tics;
@@ -45,9 +47,10 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
     for (const TrialRecord& t : trials) {
       if (t.condition != summary.conditions[c] || t.outcome == "fault") continue;
       const bool timeout = t.outcome == "timeout";
-      const double aside = 0.5 * std::fmod(0.618 * static_cast<double>(t.trial), 1.0) - 0.25;  // so that dots don't hide each other
-      table.row(t.trial + 1, t.participant + 1, t.condition, static_cast<double>(c) + aside, kInDegrees * t.error, t.duration,
-                timeout ? 1 : 0, colourNumber(conditionColour(c)));
+      // so that dots don't hide each other
+      const double aside = 0.5 * std::fmod(0.618 * static_cast<double>(t.trial), 1.0) - 0.25;
+      table.row(t.trial + 1, t.participant + 1, t.condition, static_cast<double>(c) + aside, kInDegrees * t.error,
+                t.duration, timeout ? 1 : 0, colourNumber(conditionColour(c)));
       time += t.duration;
       ++n;
       if (timeout) continue;
@@ -76,25 +79,27 @@ Figure turnFigure(const TrialTrace& trace) {
   Figure figure;
   figure.name = "turn_" + fileNamePart(trace.trial.condition);
   figure.title = fmt::format("{}: a trial of alignment", conditionLabel(trace.trial.condition));
-  figure.caption =
-      fmt::format("Trial {}, participant {}. Top: direction of the flat from the monitor; bottom: normal forces of both fingers.",
-                  trace.trial.trial + 1, trace.trial.participant + 1);
+  figure.caption = fmt::format(
+      "Trial {}, participant {}. Top: direction of the flat from the monitor; bottom: normal forces of both fingers.",
+      trace.trial.trial + 1, trace.trial.participant + 1);
   PlotTable table{"time_s", "flat_deg", "f0_normal_N", "f1_normal_N"};
   const double start = trace.samples.front().time;
   for (const SampleRecord& s : trace.samples) {
     table.row(s.time - start, flatErrorOf(s), s.fingers[0].normal_force, s.fingers[1].normal_force);
   }
   figure.data = {{figure.name + ".csv", table.take()}};
-  figure.script = figurePrelude(figure.name) +
-                  fmt::format(
-                      "set multiplot layout 2,1\nset lmargin 10\nset xrange [0:{:.3f}]\nset ylabel 'flat from target [deg]'\n"
-                      "set yrange [-190:190]\nset ytics 90\nplot 0 with lines dt 2 lc rgb '{}' notitle, "
-                      "data skip 1 using 1:2 with points pt 7 ps 0.3 lc rgb '{}' notitle\n"
-                      "set ylabel 'normal force [N]'\nset yrange [0:*]\nset ytics autofreq\nset xlabel 'time in the trial [s]'\n"
-                      "plot data skip 1 using 1:3 with lines lc rgb '{}' title '{}', '' skip 1 using 1:4 with lines lc rgb '{}' title "
-                      "'{}'\nunset multiplot\n",
-                      std::max(1e-3, trace.samples.back().time - start), palette::kGrey, palette::kInk, kFingers[0].colour,
-                      kFingers[0].name, kFingers[1].colour, kFingers[1].name);
+  figure.script =
+      figurePrelude(figure.name) +
+      fmt::format(
+          "set multiplot layout 2,1\nset lmargin 10\nset xrange [0:{:.3f}]\nset ylabel 'flat from target [deg]'\n"
+          "set yrange [-190:190]\nset ytics 90\nplot 0 with lines dt 2 lc rgb '{}' notitle, "
+          "data skip 1 using 1:2 with points pt 7 ps 0.3 lc rgb '{}' notitle\n"
+          "set ylabel 'normal force [N]'\nset yrange [0:*]\nset ytics autofreq\nset xlabel 'time in the trial [s]'\n"
+          "plot data skip 1 using 1:3 with lines lc rgb '{}' title '{}', '' skip 1 using 1:4 with lines lc rgb '{}' "
+          "title "
+          "'{}'\nunset multiplot\n",
+          std::max(1e-3, trace.samples.back().time - start), palette::kGrey, palette::kInk, kFingers[0].colour,
+          kFingers[0].name, kFingers[1].colour, kFingers[1].name);
   return figure;
 }
 

@@ -20,22 +20,25 @@ constexpr double kSpread = 0.12;      // and fill this width
 
 double positionOf(const SessionSummary& s, double mu_s, std::size_t condition) {
   const auto friction = std::lower_bound(s.frictions.begin(), s.frictions.end(), mu_s) - s.frictions.begin();
-  return static_cast<double>(friction) + kDodge * (static_cast<double>(condition) - 0.5 * static_cast<double>(s.conditions.size() - 1));
+  return static_cast<double>(friction) +
+         kDodge * (static_cast<double>(condition) - 0.5 * static_cast<double>(s.conditions.size() - 1));
 }
 
 std::size_t placeOf(const SessionSummary& s, const std::string& condition) {
-  return static_cast<std::size_t>(std::find(s.conditions.begin(), s.conditions.end(), condition) - s.conditions.begin());
+  return static_cast<std::size_t>(std::find(s.conditions.begin(), s.conditions.end(), condition) -
+                                  s.conditions.begin());
 }
 
 std::string meansCsv(const SessionSummary& s, std::size_t m) {
-  PlotTable table{"condition", "condition_index", "mu_s", "position", "trials", "mean", "ci95_low", "ci95_high", "lower_bound"};
+  PlotTable table{"condition", "condition_index", "mu_s",      "position",   "trials",
+                  "mean",      "ci95_low",        "ci95_high", "lower_bound"};
   for (const CellSummary& c : s.cells) {
     if (c.allFrictions()) continue;
     const Estimate& e = c.measures[m];
     const Interval interval = intervalOf(e, Averaged::kPositive);
     const std::size_t k = placeOf(s, c.condition);
-    table.row(c.condition, k, c.mu_s, positionOf(s, c.mu_s, k), c.trials, e.mean, interval.low, c.timeouts > 0 ? e.mean : interval.high,
-              c.timeouts > 0 ? 1 : 0);
+    table.row(c.condition, k, c.mu_s, positionOf(s, c.mu_s, k), c.trials, e.mean, interval.low,
+              c.timeouts > 0 ? e.mean : interval.high, c.timeouts > 0 ? 1 : 0);
   }
   return table.take();
 }
@@ -48,7 +51,8 @@ std::string trialsCsv(const SessionSummary& s, const std::vector<TrialRecord>& t
   for (const auto& [cell, of_cell] : cells) {
     for (std::size_t i = 0; i < of_cell.size(); ++i) {
       const TrialRecord& t = of_cell[i];
-      const double share = of_cell.size() < 2 ? 0 : static_cast<double>(i) / static_cast<double>(of_cell.size() - 1) - 0.5;
+      const double share =
+          of_cell.size() < 2 ? 0 : static_cast<double>(i) / static_cast<double>(of_cell.size() - 1) - 0.5;
       table.row(t.trial + 1, t.participant + 1, t.condition, cell.first, t.mu_s,
                 positionOf(s, t.mu_s, cell.first) + kDotsAside + kSpread * share, t.outcome, kMeasures[m].of(t));
     }
@@ -58,8 +62,10 @@ std::string trialsCsv(const SessionSummary& s, const std::vector<TrialRecord>& t
 
 std::string frictionTics(const SessionSummary& s) {
   std::string tics;
-  for (std::size_t i = 0; i < s.frictions.size(); ++i) tics += fmt::format("{}'{:.2f}' {}", i ? ", " : "", s.frictions[i], i);
-  return fmt::format("set xtics ({}) scale 0\nset xrange [-0.6:{}]\n", tics, static_cast<double>(s.frictions.size()) - 0.4);
+  for (std::size_t i = 0; i < s.frictions.size(); ++i)
+    tics += fmt::format("{}'{:.2f}' {}", i ? ", " : "", s.frictions[i], i);
+  return fmt::format("set xtics ({}) scale 0\nset xrange [-0.6:{}]\n", tics,
+                     static_cast<double>(s.frictions.size()) - 0.4);
 }
 
 // Open circles are drawn over the means that are lower bounds.
@@ -67,11 +73,14 @@ std::string conditionPlots(const SessionSummary& s, const std::string& name) {
   std::string plots;
   for (std::size_t k = 0; k < s.conditions.size(); ++k) {
     const char* colour = conditionColour(k);
-    plots += fmt::format("{} '{}_trials.csv' skip 1 using ($4=={} ? $6 : NaN):8 with points pt 7 ps 1.6 lc rgb '#90{}' notitle",
-                         k ? "," : "plot", name, k, colour + 1);
-    plots += fmt::format(", data skip 1 using ($2=={} ? $4 : NaN):6:7:8 with yerrorbars pt {} ps 2.6 lw 2 lc rgb '{}' title {}", k,
-                         k % 2 ? 5 : 7, colour, gnuplotString(conditionLabel(s.conditions[k])));
-    plots += fmt::format(", data skip 1 using ($2=={} && $9==1 ? $4 : NaN):6 with points pt 7 ps 1.3 lc rgb '#ffffff' notitle", k);
+    plots += fmt::format(
+        "{} '{}_trials.csv' skip 1 using ($4=={} ? $6 : NaN):8 with points pt 7 ps 1.6 lc rgb '#90{}' notitle",
+        k ? "," : "plot", name, k, colour + 1);
+    plots += fmt::format(
+        ", data skip 1 using ($2=={} ? $4 : NaN):6:7:8 with yerrorbars pt {} ps 2.6 lw 2 lc rgb '{}' title {}", k,
+        k % 2 ? 5 : 7, colour, gnuplotString(conditionLabel(s.conditions[k])));
+    plots += fmt::format(
+        ", data skip 1 using ($2=={} && $9==1 ? $4 : NaN):6 with points pt 7 ps 1.3 lc rgb '#ffffff' notitle", k);
   }
   return plots + "\n";
 }
@@ -82,9 +91,11 @@ std::string orderWords(const SessionSummary& s, std::size_t m) {
   std::map<double, std::array<double, 2>> means;
   for (const CellSummary& c : s.cells) {
     if (!c.allFrictions())
-      means.try_emplace(c.mu_s, std::array<double, 2>{NAN, NAN}).first->second[placeOf(s, c.condition)] = c.measures[m].mean;
+      means.try_emplace(c.mu_s, std::array<double, 2>{NAN, NAN}).first->second[placeOf(s, c.condition)] =
+          c.measures[m].mean;
   }
-  const auto lower = std::count_if(means.begin(), means.end(), [](const auto& at) { return at.second[1] < at.second[0]; });
+  const auto lower =
+      std::count_if(means.begin(), means.end(), [](const auto& at) { return at.second[1] < at.second[0]; });
   return fmt::format("the mean of {} lies below that of {} at {} of {} frictions", conditionLabel(s.conditions[1]),
                      conditionLabel(s.conditions[0]), lower, means.size());
 }
@@ -100,7 +111,8 @@ std::string figurePrelude(const std::string& name) {
   return fmt::format(
       "set encoding utf8\nset datafile separator comma\nset datafile missing 'nan'\n"
       "set border 3 lw 0.7 lc rgb '{0}'\nset tics nomirror out textcolor rgb '{0}'\n"
-      "set grid ytics lt 1 lw 0.5 lc rgb '#e2e2e2'\nset key outside top center horizontal Left reverse samplen 1.5 textcolor rgb '{0}'\n"
+      "set grid ytics lt 1 lw 0.5 lc rgb '#e2e2e2'\nset key outside top center horizontal Left reverse samplen 1.5 "
+      "textcolor rgb '{0}'\n"
       "set xlabel textcolor rgb '{0}'\nset ylabel textcolor rgb '{0}'\ndata = '{1}.csv'\n",
       palette::kInk, name);
 }
@@ -119,10 +131,12 @@ Figure measureFigure(const SessionSummary& s, const std::vector<TrialRecord>& tr
   figure.name = is_time ? "time" : kMeasures[m].key;
   figure.title = fmt::format("{} per condition and friction", is_time ? "Time" : "Squeezes");
   figure.caption = fmt::format(
-      "To see: {}. Small dots: single trials. Large marks: means with their 95 % confidence intervals (Student t, of the logarithm). A "
+      "To see: {}. Small dots: single trials. Large marks: means with their 95 % confidence intervals (Student t, of "
+      "the logarithm). A "
       "white "
       "centre marks a lower bound, without an upper end: a trial of the cell timed out.{}",
-      orderWords(s, m), is_time ? "" : " A squeeze is counted when both normal forces exceed 0.2 N with the intent to lift.");
+      orderWords(s, m),
+      is_time ? "" : " A squeeze is counted when both normal forces exceed 0.2 N with the intent to lift.");
   figure.data = {{figure.name + ".csv", meansCsv(s, m)}, {figure.name + "_trials.csv", trialsCsv(s, trials, m)}};
   figure.script = figurePrelude(figure.name) + frictionTics(s) +
                   "set xlabel 'friction coefficient µₛ [-]'\nset yrange [0:*]\nset offsets 0, 0, graph 0.03, 0\n" +

@@ -29,8 +29,8 @@ std::string measureText(const FindingMeasure& m) { return *m.unit ? fmt::format(
 std::string whatIsSeen(const std::vector<const PairedRow*>& rows) {
   std::string words;
   for (const PairedRow* row : rows) {
-    words += fmt::format("{}{}, lower with the display for {} of {}", words.empty() ? "" : "; ", findingMeasures()[row->measure].label,
-                         row->test.lower, row->test.n);
+    words += fmt::format("{}{}, lower with the display for {} of {}", words.empty() ? "" : "; ",
+                         findingMeasures()[row->measure].label, row->test.lower, row->test.n);
   }
   return words;
 }
@@ -50,14 +50,16 @@ std::string panelOf(const PairedRow& row, std::size_t index) {
   label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
   const std::string own = fmt::format("skip 1 using ($1=={} ? ", index);
   std::string script = fmt::format("set title {}\nset yrange [0:{:.6g}]\n", gnuplotString(label), 1.08 * highest(row));
-  script += fmt::format("plot 'people.csv' {}0 : NaN):3:(1):($4-$3) with vectors nohead lw 0.8 lc rgb '#90222222' notitle", own);
+  script += fmt::format(
+      "plot 'people.csv' {}0 : NaN):3:(1):($4-$3) with vectors nohead lw 0.8 lc rgb '#90222222' notitle", own);
   for (const int condition : {0, 1}) {
     const char* colour = conditionColour(static_cast<std::size_t>(condition));
-    script += fmt::format(", 'people.csv' {}{} : NaN):{} with points pt 7 ps 1.5 lc rgb '#40{}' notitle", own, condition, condition + 3,
-                          colour + 1);
+    script += fmt::format(", 'people.csv' {}{} : NaN):{} with points pt 7 ps 1.5 lc rgb '#40{}' notitle", own,
+                          condition, condition + 3, colour + 1);
     script +=
-        fmt::format(", 'people_means.csv' {}{} : NaN):{}:{}:{} with yerrorbars pt {} ps 2.2 lw 2 lc rgb '{}' notitle", own,
-                    condition == 0 ? -0.25 : 1.25, 3 * condition + 2, 3 * condition + 3, 3 * condition + 4, condition ? 5 : 7, colour);
+        fmt::format(", 'people_means.csv' {}{} : NaN):{}:{}:{} with yerrorbars pt {} ps 2.2 lw 2 lc rgb '{}' notitle",
+                    own, condition == 0 ? -0.25 : 1.25, 3 * condition + 2, 3 * condition + 3, 3 * condition + 4,
+                    condition ? 5 : 7, colour);
   }
   return script + "\n";
 }
@@ -82,16 +84,18 @@ std::optional<Figure> peopleFigure(const SessionSummary& s) {
   figure.name = "people";
   figure.title = "Each participant in both conditions";
   figure.caption = fmt::format(
-      "To see: {}. Small dots: means of one participant, joined by a line. Large marks: means over the participants with their 95 % "
+      "To see: {}. Small dots: means of one participant, joined by a line. Large marks: means over the participants "
+      "with their 95 % "
       "confidence "
       "intervals.",
       whatIsSeen(rows));
   const std::size_t columns = std::min<std::size_t>(2, rows.size()), lines = (rows.size() + columns - 1) / columns;
   figure.height = static_cast<int>(60 + 560 * lines);
   figure.data = {{"people.csv", people.take()}, {"people_means.csv", means.take()}};
-  figure.script = figurePrelude(figure.name) +
-                  fmt::format("set multiplot layout {},{}\nset xtics ('force only' 0, 'CLD + force' 1) scale 0\n", lines, columns) +
-                  "set xrange [-0.6:1.6]\n" + panels + "unset multiplot\n";
+  figure.script =
+      figurePrelude(figure.name) +
+      fmt::format("set multiplot layout {},{}\nset xtics ('force only' 0, 'CLD + force' 1) scale 0\n", lines, columns) +
+      "set xrange [-0.6:1.6]\n" + panels + "unset multiplot\n";
   return figure;
 }
 

@@ -58,16 +58,17 @@ bool inEverySample(const TrialTrace& trace, Is is) {
 }
 
 std::string caption(const TrialTrace& trace) {
-  std::string text =
-      fmt::format("The same {}. Where each tactor was told to be on its fingerpad, and where it was; the fingertip is at the top.",
-                  trialWords(trace.trial));
+  std::string text = fmt::format(
+      "The same {}. Where each tactor was told to be on its fingerpad, and where it was; the fingertip is at the top.",
+      trialWords(trace.trial));
   if (inEverySample(trace, [](const FingerRecord& f) { return !std::isfinite(f.place_shown_L[0]); })) {
     text += " The devices didn't measure the tactors' places.";
   }
   return text;
 }
 
-// Distal up, radial to the right. A circle marks where the wanted path starts, a square its end: a path may stand still in between.
+// Distal up, radial to the right. A circle marks where the wanted path starts, a square
+// its end: a path may stand still in between.
 std::string padPanel(std::size_t finger, double half, std::size_t last) {
   const int column = finger == 0 ? 2 : 6;
   return fmt::format(
@@ -76,7 +77,8 @@ std::string padPanel(std::size_t finger, double half, std::size_t last) {
       "'' skip 1 using {5}:{4} with lines lw 1.0 lc rgb '{6}' title 'shown', "
       "'' skip 1 every ::0::0 using {3}:{2} with points pt 6 ps 2 lc rgb '{7}' title 'start', "
       "'' skip 1 every ::{8}::{8} using {3}:{2} with points pt 4 ps 2 lc rgb '{7}' title 'end'\n",
-      kFingers[finger].name, half, column, column + 1, column + 2, column + 3, kFingers[finger].colour, palette::kInk, last);
+      kFingers[finger].name, half, column, column + 1, column + 2, column + 3, kFingers[finger].colour, palette::kInk,
+      last);
 }
 
 }  // namespace
@@ -98,8 +100,8 @@ Figure tactorFigure(const TrialTrace& trace) {
   figure.script = figurePrelude(figure.name) +
                   "set multiplot layout 1,2\nset size ratio -1\nset grid xtics ytics lt 1 lw 0.5 lc rgb '#e2e2e2'\n" +
                   fmt::format("set xtics {0}\nset ytics {0}\n", half > 6 ? 4 : 1) +
-                  "set xlabel 'towards the radial side [mm]'\nset ylabel 'towards the fingertip [mm]'\n" + padPanel(0, half, last) +
-                  padPanel(1, half, last) + "unset multiplot\n";
+                  "set xlabel 'towards the radial side [mm]'\nset ylabel 'towards the fingertip [mm]'\n" +
+                  padPanel(0, half, last) + padPanel(1, half, last) + "unset multiplot\n";
   return figure;
 }
 

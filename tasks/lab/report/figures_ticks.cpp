@@ -39,18 +39,22 @@ struct Percentile {
 };
 constexpr Percentile kPercentiles[] = {{"median", 0.5}, {"99 % ≤", 0.99}, {"99.9 % ≤", 0.999}, {"largest", 1.0}};
 
-std::string threeDigits(double value) { return value < 1000 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value); }
+std::string threeDigits(double value) {
+  return value < 1000 ? fmt::format("{:.3g}", value) : fmt::format("{:.0f}", value);
+}
 
-// Labels step down the page, above the bars, so that close percentiles don't overprint each other; in the right half they end at the line.
+// Labels step down the page, above the bars, so that close percentiles don't overprint each
+// other; in the right half they end at the line.
 std::string percentileLines(const std::vector<double>& times, double middle) {
   std::string script;
   double height = 0.96;
   for (const Percentile& p : kPercentiles) {
     const double t = percentile(times, p.share);
-    script +=
-        fmt::format("set arrow from {0}, graph 0 to {0}, graph {1} nohead front lw 0.8 dt 2 lc rgb '{2}'\n", t, height, palette::kInk);
-    script += fmt::format("set label '{} {} µs' at {}, graph {} {} front textcolor rgb '{}' font ',18'\n", p.label, threeDigits(t), t,
-                          height, t > middle ? "right offset character -0.5,0" : "left offset character 0.5,0", palette::kInk);
+    script += fmt::format("set arrow from {0}, graph 0 to {0}, graph {1} nohead front lw 0.8 dt 2 lc rgb '{2}'\n", t,
+                          height, palette::kInk);
+    script += fmt::format("set label '{} {} µs' at {}, graph {} {} front textcolor rgb '{}' font ',18'\n", p.label,
+                          threeDigits(t), t, height,
+                          t > middle ? "right offset character -0.5,0" : "left offset character 0.5,0", palette::kInk);
     height -= 0.065;
   }
   return script;
@@ -58,10 +62,12 @@ std::string percentileLines(const std::vector<double>& times, double middle) {
 
 // Several in each decade where the range is short, else one.
 std::string timeTics(double least, double most) {
-  const std::vector<double> digits = most < 100 * least ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7} : std::vector<double>{1};
+  const std::vector<double> digits =
+      most < 100 * least ? std::vector<double>{1, 1.5, 2, 3, 4, 5, 7} : std::vector<double>{1};
   std::string tics;
   for (double decade = 1e-2; decade < 1e7; decade *= 10) {
-    for (const double digit : digits) tics += fmt::format("{}'{:g}' {}", tics.empty() ? "" : ", ", digit * decade, digit * decade);
+    for (const double digit : digits)
+      tics += fmt::format("{}'{:g}' {}", tics.empty() ? "" : ", ", digit * decade, digit * decade);
   }
   return fmt::format("set xtics ({})\n", tics);
 }
@@ -82,18 +88,19 @@ std::optional<Figure> tickFigure(const SessionReader& session) {
   Figure figure;
   figure.name = "tick_times";
   figure.title = "Time that a tick took";
-  figure.caption =
-      fmt::format("Share of {} recorded ticks per bin, both axes logarithmic. A tick at 1 kHz may take 1000 µs.", times.size());
+  figure.caption = fmt::format(
+      "Share of {} recorded ticks per bin, both axes logarithmic. A tick at 1 kHz may take 1000 µs.", times.size());
   figure.height = 800;
   figure.data = {{"tick_times.csv", histogramCsv(times)}, {"tick_times_percentiles.csv", percentilesCsv(times)}};
-  figure.script =
-      figurePrelude(figure.name) + percentileLines(times, std::sqrt(*least * *most)) + timeTics(*least, *most) +
-      fmt::format(
-          "set logscale xy\nset xrange [{0}:{1}]\nset yrange [{2}:2e4]\nset xlabel 'tick time [µs]'\nset ylabel 'share of ticks [%]'\n"
-          "set ytics ('100' 100, '10' 10, '1' 1, '0.1' 0.1, '0.01' 0.01, '0.001' 0.001, '0.0001' 0.0001)\n"
-          "unset key\nset style fill solid 0.55 noborder\n"
-          "plot data skip 1 using (sqrt($1*$2)):4:1:2:({2}):4 with boxxyerror lc rgb '{3}'\n",
-          *least / 1.2, *most * 1.6, 0.5 * smallest_share, palette::kBlue);
+  figure.script = figurePrelude(figure.name) + percentileLines(times, std::sqrt(*least * *most)) +
+                  timeTics(*least, *most) +
+                  fmt::format(
+                      "set logscale xy\nset xrange [{0}:{1}]\nset yrange [{2}:2e4]\nset xlabel 'tick time [µs]'\nset "
+                      "ylabel 'share of ticks [%]'\n"
+                      "set ytics ('100' 100, '10' 10, '1' 1, '0.1' 0.1, '0.01' 0.01, '0.001' 0.001, '0.0001' 0.0001)\n"
+                      "unset key\nset style fill solid 0.55 noborder\n"
+                      "plot data skip 1 using (sqrt($1*$2)):4:1:2:({2}):4 with boxxyerror lc rgb '{3}'\n",
+                      *least / 1.2, *most * 1.6, 0.5 * smallest_share, palette::kBlue);
   return figure;
 }
 

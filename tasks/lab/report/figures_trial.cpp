@@ -44,7 +44,8 @@ std::string samplesCsv(const TrialTrace& trace) {
 }
 
 bool happened(const TrialTrace& trace, const EventStyle& style) {
-  return std::any_of(trace.events.begin(), trace.events.end(), [&](const EventRecord& e) { return e.kind == style.kind; });
+  return std::any_of(trace.events.begin(), trace.events.end(),
+                     [&](const EventRecord& e) { return e.kind == style.kind; });
 }
 
 std::vector<EventStyle> stylesOf(const TrialTrace& trace) {
@@ -57,7 +58,8 @@ std::vector<EventStyle> stylesOf(const TrialTrace& trace) {
 std::string eventsCsv(const TrialTrace& trace, const std::vector<EventStyle>& styles) {
   PlotTable table{"time_s", "kind", "detail", "row"};
   for (const EventRecord& e : trace.events) {
-    const auto style = std::find_if(styles.begin(), styles.end(), [&](const EventStyle& s) { return e.kind == s.kind; });
+    const auto style =
+        std::find_if(styles.begin(), styles.end(), [&](const EventStyle& s) { return e.kind == s.kind; });
     if (style != styles.end()) table.row(e.time - trace.samples.front().time, e.kind, e.detail, style - styles.begin());
   }
   return table.take();
@@ -89,7 +91,8 @@ Ranges rangesOf(const TrialTrace& trace) {
   r.height_low -= 3;
   r.height_high *= 1.05;
   r.normal = std::max(0.1, 1.1 * normal);
-  r.tangential = std::max({0.1, 1.1 * trace.trial.mu_s * normal, 1.1 * largestForce(trace, &FingerRecord::tangential_force)});
+  r.tangential =
+      std::max({0.1, 1.1 * trace.trial.mu_s * normal, 1.1 * largestForce(trace, &FingerRecord::tangential_force)});
   return r;
 }
 
@@ -106,17 +109,18 @@ std::string eventPanel(const std::vector<EventStyle>& styles) {
   std::string tics, plots;
   for (std::size_t i = 0; i < styles.size(); ++i) {
     tics += fmt::format("{}'{}' {}", i ? ", " : "", styles[i].label, i);
-    plots += fmt::format("{} events skip 1 using ($4=={} ? $1 : NaN):4 with points pt {} ps 1.8 lc rgb '{}' notitle", i ? "," : "plot", i,
-                         styles[i].mark, styles[i].colour);
+    plots += fmt::format("{} events skip 1 using ($4=={} ? $1 : NaN):4 with points pt {} ps 1.8 lc rgb '{}' notitle",
+                         i ? "," : "plot", i, styles[i].mark, styles[i].colour);
   }
-  return fmt::format("set ytics ({}) scale 0\nset yrange [-0.7:{}.7]\nunset ylabel\n{}\nset ytics autofreq scale 1\n", tics,
-                     styles.size() - 1, plots);
+  return fmt::format("set ytics ({}) scale 0\nset yrange [-0.7:{}.7]\nunset ylabel\n{}\nset ytics autofreq scale 1\n",
+                     tics, styles.size() - 1, plots);
 }
 
 std::string heightPanel(const Ranges& r) {
   return fmt::format(
       "set ylabel 'height [mm]'\nset yrange [{}:{}]\n"
-      "plot 50 with lines dt 2 lw 0.8 lc rgb '{}' title 'goal, 50 mm', 5 with lines dt 3 lw 1.2 lc rgb '{}' title 'try, 5 mm', "
+      "plot 50 with lines dt 2 lw 0.8 lc rgb '{}' title 'goal, 50 mm', 5 with lines dt 3 lw 1.2 lc rgb '{}' title "
+      "'try, 5 mm', "
       "data skip 1 using 1:2 with lines lw 1.3 lc rgb '{}' title 'object above its start'\n",
       r.height_low, r.height_high, palette::kGrey, palette::kGrey, palette::kInk);
 }
@@ -124,7 +128,8 @@ std::string heightPanel(const Ranges& r) {
 std::string gripPanel(const Ranges& r) {
   return fmt::format(
       "set ylabel 'normal force [N]'\nset yrange [0:{}]\nset format y '{}'\n"
-      "plot data skip 1 using 1:3 with lines lw 1.2 lc rgb '{}' title '{}', '' skip 1 using 1:7 with lines lw 1.2 lc rgb '{}' title '{}'\n",
+      "plot data skip 1 using 1:3 with lines lw 1.2 lc rgb '{}' title '{}', '' skip 1 using 1:7 with lines lw 1.2 lc "
+      "rgb '{}' title '{}'\n",
       r.normal, forceFormat(r.normal), kFingers[0].colour, kFingers[0].name, kFingers[1].colour, kFingers[1].name);
 }
 
@@ -132,11 +137,12 @@ std::string slipPanel(std::size_t finger, const Ranges& r) {
   const int column = finger == 0 ? 4 : 8;
   return fmt::format(
       "set ylabel '{0} [N]'\nset yrange [0:{1}]\nset format y '{8}'\n"
-      "plot data skip 1 using 1:(${2} > 0 ? {1} : 0) with filledcurves y=0 fs solid 0.3 noborder lc rgb '{3}' title 'sliding', "
+      "plot data skip 1 using 1:(${2} > 0 ? {1} : 0) with filledcurves y=0 fs solid 0.3 noborder lc rgb '{3}' title "
+      "'sliding', "
       "'' skip 1 using 1:{4} with lines dt 2 lw 1.0 lc rgb '{5}' title 'limit µₛ N', "
       "'' skip 1 using 1:{6} with lines lw 1.3 lc rgb '{7}' title 'tangential force'\n",
-      kFingers[finger].name, r.tangential, column + 2, palette::kOrange, column + 1, palette::kGrey, column, kFingers[finger].colour,
-      forceFormat(r.tangential));
+      kFingers[finger].name, r.tangential, column + 2, palette::kOrange, column + 1, palette::kGrey, column,
+      kFingers[finger].colour, forceFormat(r.tangential));
 }
 
 }  // namespace
@@ -149,7 +155,8 @@ std::optional<TrialRecord> representativeTrial(const std::vector<TrialRecord>& t
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const TrialRecord& a, const TrialRecord& b) { return a.squeezes < b.squeezes; });
   const std::int64_t median = candidates[(candidates.size() - 1) / 2].squeezes;
-  return *std::find_if(candidates.begin(), candidates.end(), [&](const TrialRecord& t) { return t.squeezes == median; });
+  return *std::find_if(candidates.begin(), candidates.end(),
+                       [&](const TrialRecord& t) { return t.squeezes == median; });
 }
 
 TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial) {
@@ -170,19 +177,23 @@ Figure trialFigure(const TrialTrace& trace) {
   figure.name = "trial_" + fileNamePart(trace.trial.condition);
   figure.title = fmt::format("{}: a representative trial", conditionLabel(trace.trial.condition));
   figure.caption = fmt::format(
-      "This is {}; squeezes: {}, the median of the condition. From the top: events; height of the object above its start; normal "
+      "This is {}; squeezes: {}, the median of the condition. From the top: events; height of the object above its "
+      "start; normal "
       "force "
-      "of both fingers; tangential force of the index finger and of the thumb with the limit µₛ N (N: normal force) beyond which a contact "
+      "of both fingers; tangential force of the index finger and of the thumb with the limit µₛ N (N: normal force) "
+      "beyond which a contact "
       "slides, shaded while it does.",
       trialWords(trace.trial), trace.trial.squeezes);
   figure.height = 1900;
   figure.data = {{figure.name + ".csv", samplesCsv(trace)}, {figure.name + "_events.csv", eventsCsv(trace, styles)}};
-  figure.script =
-      figurePrelude(figure.name) + fmt::format("events = '{}_events.csv'\nset xrange [0:{}]\n", figure.name, r.time) +
-      "set multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.98\n"
-      "set grid xtics ytics lt 1 lw 0.5 lc rgb '#e2e2e2'\nset key at graph 0, graph 1.03 left bottom horizontal Left reverse\n" +
-      panel(0.895, 0.99, false) + eventPanel(styles) + panel(0.69, 0.855, false) + heightPanel(r) + panel(0.485, 0.65, false) +
-      gripPanel(r) + panel(0.28, 0.445, false) + slipPanel(0, r) + panel(0.07, 0.235, true) + slipPanel(1, r) + "unset multiplot\n";
+  figure.script = figurePrelude(figure.name) +
+                  fmt::format("events = '{}_events.csv'\nset xrange [0:{}]\n", figure.name, r.time) +
+                  "set multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.98\n"
+                  "set grid xtics ytics lt 1 lw 0.5 lc rgb '#e2e2e2'\nset key at graph 0, graph 1.03 left bottom "
+                  "horizontal Left reverse\n" +
+                  panel(0.895, 0.99, false) + eventPanel(styles) + panel(0.69, 0.855, false) + heightPanel(r) +
+                  panel(0.485, 0.65, false) + gripPanel(r) + panel(0.28, 0.445, false) + slipPanel(0, r) +
+                  panel(0.07, 0.235, true) + slipPanel(1, r) + "unset multiplot\n";
   return figure;
 }
 

@@ -35,36 +35,43 @@ std::string comparisonWords(const PairedRow& row) {
   const std::string unit = unitOf(m);
   std::string head = m.label;
   head[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(head[0])));
-  std::string words = fmt::format("{}: {:.2f}{} by force only, {:.2f}{} with the display", head, row.force.mean, unit, row.cld.mean, unit);
+  std::string words = fmt::format("{}: {:.2f}{} by force only, {:.2f}{} with the display", head, row.force.mean, unit,
+                                  row.cld.mean, unit);
   if (test.n < 2) return words + "; one person says nothing about others";
-  const double low = test.difference.mean - test.difference.half_width, high = test.difference.mean + test.difference.half_width;
-  words += fmt::format("; difference {:+.2f}{} (95 % interval {:+.2f} to {:+.2f})", test.difference.mean, unit, low, high);
+  const double low = test.difference.mean - test.difference.half_width,
+               high = test.difference.mean + test.difference.half_width;
+  words +=
+      fmt::format("; difference {:+.2f}{} (95 % interval {:+.2f} to {:+.2f})", test.difference.mean, unit, low, high);
   const bool less = test.difference.mean < 0;
-  return words + fmt::format(", {} for {} of {} people; {}", less ? "less" : "more", less ? test.lower : test.higher, test.n,
-                             chanceWords(test.p_wilcoxon));
+  return words + fmt::format(", {} for {} of {} people; {}", less ? "less" : "more", less ? test.lower : test.higher,
+                             test.n, chanceWords(test.p_wilcoxon));
 }
 
 std::string verdictWords(const PairedRow& row) {
   if (row.test.n < 2) return "More people are needed for a finding.";
-  if (row.test.p_wilcoxon < kChanceLimit) return fmt::format("So the display {} it.", row.test.difference.mean < 0 ? "lowers" : "raises");
+  if (row.test.p_wilcoxon < kChanceLimit)
+    return fmt::format("So the display {} it.", row.test.difference.mean < 0 ? "lowers" : "raises");
   return "So no effect of the display is shown; that isn't to say that there is none.";
 }
 
 // The other measures of the task that differ all the same.
 std::string otherWords(const std::vector<PairedRow>& rows, std::size_t primary) {
   std::vector<double> p;
-  for (std::size_t k = 0; k < rows.size(); ++k) p.push_back(k == primary || rows[k].test.n < 2 ? std::nan("") : rows[k].test.p_wilcoxon);
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    p.push_back(k == primary || rows[k].test.n < 2 ? std::nan("") : rows[k].test.p_wilcoxon);
   const std::vector<double> adjusted = holmAdjusted(p);
   const auto looked = std::count_if(p.begin(), p.end(), [](double x) { return x == x; });
   std::string differ;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (adjusted[k] < kChanceLimit)
-      differ +=
-          fmt::format("{}{} ({:+.2f})", differ.empty() ? "" : ", ", findingMeasures()[rows[k].measure].label, rows[k].test.difference.mean);
+      differ += fmt::format("{}{} ({:+.2f})", differ.empty() ? "" : ", ", findingMeasures()[rows[k].measure].label,
+                            rows[k].test.difference.mean);
   }
   if (looked == 0) return "";
-  return differ.empty() ? fmt::format("None of the {} looked at differs beyond chance (Holm).", counted(looked, "other measure"))
-                        : fmt::format("Of the {} looked at, these differ as well (Holm): {}.", counted(looked, "other measure"), differ);
+  return differ.empty()
+             ? fmt::format("None of the {} looked at differs beyond chance (Holm).", counted(looked, "other measure"))
+             : fmt::format("Of the {} looked at, these differ as well (Holm): {}.", counted(looked, "other measure"),
+                           differ);
 }
 
 std::string taskWords(const SessionSummary& s, bool pickup) {
@@ -99,7 +106,8 @@ std::vector<std::string> findingWords(const SessionSummary& s) {
     const std::string task = taskWords(s, pickup);
     if (!task.empty()) words.push_back(fmt::format("{}. {}", peopleWords(s), task));
   }
-  if (words.empty()) words.push_back(fmt::format("{}, {}: no two conditions to compare.", peopleWords(s), counted(s.trials, "trial")));
+  if (words.empty())
+    words.push_back(fmt::format("{}, {}: no two conditions to compare.", peopleWords(s), counted(s.trials, "trial")));
   return words;
 }
 

@@ -1,6 +1,8 @@
-// gnuplot: runs the plotting program (Debian package gnuplot-nox) on one script, without a shell, in a temporary directory of its own.
+// gnuplot: runs the plotting program (Debian package gnuplot-nox) on one script, without a
+// shell, in a temporary directory of its own.
 //
-// Errors: InputError if the program is missing (with the remedy) or rejects the script (with what it said); Interrupted, the program ended.
+// Errors: InputError if the program is missing (with the remedy) or rejects the script (with what
+// it said); Interrupted, the program ended.
 #pragma once
 #include <atomic>
 #include <string>
@@ -20,8 +22,8 @@ struct Figure {
   std::vector<std::pair<std::string, std::string>> data;  // file name (.csv) and content
 };
 
-// Text as a string of gnuplot's: in single quotes, in which nothing is expanded; a single quote in it stands in double ones, joined by dots,
-// since gnuplot 5.4 mistakes two in a row for the end. Control characters become blanks.
+// Text as a string of gnuplot's: in single quotes, in which nothing is expanded; a single quote in it stands in double
+// ones, joined by dots, since gnuplot 5.4 mistakes two in a row for the end. Control characters become blanks.
 std::string gnuplotString(const std::string& text);
 
 // The same for the label of a tic, which gnuplot takes for a format of its number.
@@ -35,7 +37,8 @@ class NothingToDraw : public InputError {
 
 class Gnuplot {
  public:
-  // A name to look up in PATH, or a path. A picture that isn't finished when `interrupted` (null: never) comes true ends with Interrupted.
+  // A name to look up in PATH, or a path. A picture that isn't finished when `interrupted` (null:
+  // never) comes true ends with Interrupted.
   explicit Gnuplot(std::string program = "gnuplot", const std::atomic<bool>* interrupted = nullptr);
   Gnuplot(Gnuplot&&) = delete;
   ~Gnuplot();

@@ -52,7 +52,8 @@ Groups wholePeople(const Groups& conditions) {
   Groups whole(conditions.size());
   const std::size_t people = conditions.empty() ? 0 : conditions.front().size();
   for (std::size_t person = 0; person < people; ++person) {
-    if (!std::all_of(conditions.begin(), conditions.end(), [&](const auto& c) { return std::isfinite(c[person]); })) continue;
+    if (!std::all_of(conditions.begin(), conditions.end(), [&](const auto& c) { return std::isfinite(c[person]); }))
+      continue;
     for (std::size_t c = 0; c < conditions.size(); ++c) whole[c].push_back(conditions[c][person]);
   }
   return whole;
@@ -105,7 +106,8 @@ double tukeyPair(const Groups& groups, std::size_t a, std::size_t b) {
   const Moments first = finiteMoments(groups[a]), second = finiteMoments(groups[b]);
   if (!(test.within > 0) || first.n < 1 || second.n < 1) return 1;
   const double error = std::sqrt(0.5 * test.within * (1 / first.n + 1 / second.n));
-  return studentizedRangeTail(std::abs(first.mean - second.mean) / error, static_cast<int>(groups.size()), test.within_dof);
+  return studentizedRangeTail(std::abs(first.mean - second.mean) / error, static_cast<int>(groups.size()),
+                              test.within_dof);
 }
 
 MeansTest studentTest(const std::vector<double>& a, const std::vector<double>& b) {

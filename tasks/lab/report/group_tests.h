@@ -2,12 +2,16 @@
 //
 //   one-way       F = MS_between / MS_within,  k - 1 and N - k degrees of freedom
 //   repeated      F = MS_conditions / MS_residual,  k - 1 and (k - 1)(n - 1): each of n people did each of k conditions
-//   Tukey         q = |m_a - m_b| / sqrt(MS_within / 2 (1/n_a + 1/n_b)), studentized range of k means (J. W. Tukey; C. Y. Kramer, 1956)
+//   Tukey         q = |m_a - m_b| / sqrt(MS_within / 2 (1/n_a + 1/n_b)), studentized range of
+//                 k means (J. W. Tukey; C. Y. Kramer, 1956)
 //   Student       t = (m_b - m_a) / sqrt(s^2 (1/n_a + 1/n_b)), one variance, n_a + n_b - 2: as the published tests
-//   Welch         t = (m_b - m_a) / sqrt(s_a^2/n_a + s_b^2/n_b), degrees of freedom by F. E. Satterthwaite (B. L. Welch, Biometrika 34, 1947)
-//   equivalence   two one-sided t-tests against -margin and +margin; p is the larger (D. J. Schuirmann, J. Pharmacokinet. Biopharm. 15, 1987)
+//   Welch         t = (m_b - m_a) / sqrt(s_a^2/n_a + s_b^2/n_b), degrees of freedom by F. E.
+//                 Satterthwaite (B. L. Welch, Biometrika 34, 1947)
+//   equivalence   two one-sided t-tests against -margin and +margin; p is the larger (D. J.
+//                 Schuirmann, J. Pharmacokinet. Biopharm. 15, 1987)
 //
-// Numbers that aren't finite are left out (of repeated measures: the person). Where a test needs more numbers or nothing varies, p is 1.
+// Numbers that aren't finite are left out (of repeated measures: the person). Where a test
+// needs more numbers or nothing varies, p is 1.
 #pragma once
 #include <vector>
 

@@ -27,7 +27,8 @@ std::string facts(const SessionSummary& s) {
 std::string cellTable(const SessionSummary& s) {
   if (s.cells.empty()) return s.trials > 0 ? "" : "<p>No trial was finished.</p>\n";
   std::string html = "<div class=\"wide\"><table>\n" + htmlRow(tableHeads(), "th");
-  for (const CellSummary& cell : s.cells) html += htmlRowOfIntervals(tableRow(cell), cell.allFrictions() ? " class=\"all\"" : "");
+  for (const CellSummary& cell : s.cells)
+    html += htmlRowOfIntervals(tableRow(cell), cell.allFrictions() ? " class=\"all\"" : "");
   return fmt::format("{}</table></div>\n<p class=\"note\">{}</p>\n", html, escaped(tableNote(s)));
 }
 
@@ -36,10 +37,12 @@ std::string pairTable(const SessionSummary& s) {
   std::string html = "<h2>The conditions compared</h2>\n<div class=\"wide\"><table>\n" + htmlRow(pairHeads(), "th");
   for (const PairedRow& row : s.pairs) html += htmlRowOfIntervals(pairTexts(row));
   return html +
-         "</table></div>\n<p class=\"note\">Means over the participants with their 95 % intervals (Student t; of the logarithm, of shares "
+         "</table></div>\n<p class=\"note\">Means over the participants with their 95 % intervals (Student t; of the "
+         "logarithm, of shares "
          "the logit); difference: CLD + force "
          "minus force "
-         "only; d_z: mean over standard deviation of the participants' differences; paired t-test and Wilcoxon's signed ranks (exact). "
+         "only; d_z: mean over standard deviation of the participants' differences; paired t-test and Wilcoxon's "
+         "signed ranks (exact). "
          "Time-outs are censored: counts and times are per success.</p>\n";
 }
 
@@ -51,34 +54,38 @@ std::string number(double value, double scale, int digits) {
 std::string trialCell(std::int64_t trial, const ReplayPage& replay) {
   const auto found = std::find(replay.trials.begin(), replay.trials.end(), trial);
   if (replay.name.empty() || found == replay.trials.end()) return fmt::format("<td>{}</td>", trial + 1);
-  return fmt::format("<td><a href=\"{}#shown={}\">{}</a></td>", escaped(replay.name), found - replay.trials.begin() + 1, trial + 1);
+  return fmt::format("<td><a href=\"{}#shown={}\">{}</a></td>", escaped(replay.name), found - replay.trials.begin() + 1,
+                     trial + 1);
 }
 
 std::string trialList(const std::vector<TrialRecord>& trials, const ReplayPage& replay) {
   std::string html = "<h2>All trials</h2>\n<div class=\"wide\"><table>\n" +
-                     htmlRow({"trial", "task", "participant", "condition", "µₛ", "outcome", "squeezes", "lifts", "tries > 5 mm", "time [s]",
-                              "slips", "drops", "peak grip [N]", "grip ratio [-]", "offset [mm]", "error [deg]", "regrasps"},
+                     htmlRow({"trial", "task", "participant", "condition", "µₛ", "outcome", "squeezes", "lifts",
+                              "tries > 5 mm", "time [s]", "slips", "drops", "peak grip [N]", "grip ratio [-]",
+                              "offset [mm]", "error [deg]", "regrasps"},
                              "th");
   for (const TrialRecord& t : trials) {
     const auto text = [](std::int64_t n) { return std::to_string(n); };
-    std::string row =
-        htmlRow({t.training ? t.task + " (training)" : t.task, text(t.participant + 1), conditionLabel(t.condition), number(t.mu_s, 1, 2),
-                 t.outcome, text(t.squeezes), text(t.lifts), text(t.tries_5mm), number(t.duration, 1, 2), text(t.slips), text(t.drops),
-                 number(t.peak_grip, 1, 2), number(t.grip_ratio, 1, 2), number(t.offset_at_squeeze, 1e3, 1),
-                 number(t.error, 57.29577951308232, 1), text(t.regrasps)},
-                "td", fmt::format(" id=\"trial-{}\"", t.trial + 1));
+    std::string row = htmlRow(
+        {t.training ? t.task + " (training)" : t.task, text(t.participant + 1), conditionLabel(t.condition),
+         number(t.mu_s, 1, 2), t.outcome, text(t.squeezes), text(t.lifts), text(t.tries_5mm), number(t.duration, 1, 2),
+         text(t.slips), text(t.drops), number(t.peak_grip, 1, 2), number(t.grip_ratio, 1, 2),
+         number(t.offset_at_squeeze, 1e3, 1), number(t.error, 57.29577951308232, 1), text(t.regrasps)},
+        "td", fmt::format(" id=\"trial-{}\"", t.trial + 1));
     html += row.insert(row.find('>') + 1, trialCell(t.trial, replay));
   }
   return html +
-         "</table></div>\n<p class=\"note\">Grip ratio: grip while held over the smallest that holds, m g / (2 µₛ). Offset: of the "
+         "</table></div>\n<p class=\"note\">Grip ratio: grip while held over the smallest that holds, m g / (2 µₛ). "
+         "Offset: of the "
          "contacts from "
          "the antipodal line at the last squeeze.</p>\n";
 }
 
 }  // namespace
 
-std::string reportHtml(const SessionSummary& s, const std::vector<TrialRecord>& trials, const std::vector<Picture>& pictures,
-                       const std::string& figures_name, const std::string& devices, const ReplayPage& replay) {
+std::string reportHtml(const SessionSummary& s, const std::vector<TrialRecord>& trials,
+                       const std::vector<Picture>& pictures, const std::string& figures_name,
+                       const std::string& devices, const ReplayPage& replay) {
   const std::string title = fmt::format("{}, seed {}", s.info.task, s.info.seed);
   std::string html = htmlHead(title, s.warning);
   for (const std::string& words : findingWords(s)) html += fmt::format("<p class=\"finding\">{}</p>\n", escaped(words));

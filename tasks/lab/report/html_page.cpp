@@ -15,7 +15,8 @@ struct AskedItem {
 };
 
 std::ptrdiff_t answeredBy(const AskedItem& item) {
-  return std::count_if(item.answers.begin(), item.answers.end(), [](const SurveyRecord* a) { return !a->answer.empty(); });
+  return std::count_if(item.answers.begin(), item.answers.end(),
+                       [](const SurveyRecord* a) { return !a->answer.empty(); });
 }
 
 std::string meanWords(const AskedItem& item) {
@@ -133,7 +134,8 @@ std::string htmlRowOfIntervals(const std::vector<std::string>& fields, const std
     if (bracket == std::string::npos || field.find(" to ", bracket) == std::string::npos) {
       html += fmt::format("<td>{}</td>", escaped(field));
     } else {
-      html += fmt::format("<td>{}<br><small>{}</small></td>", escaped(field.substr(0, bracket)), escaped(field.substr(bracket + 1)));
+      html += fmt::format("<td>{}<br><small>{}</small></td>", escaped(field.substr(0, bracket)),
+                          escaped(field.substr(bracket + 1)));
     }
   }
   return html + "</tr>\n";
@@ -141,19 +143,24 @@ std::string htmlRowOfIntervals(const std::vector<std::string>& fields, const std
 
 std::string htmlFacts(const std::vector<std::pair<std::string, std::string>>& rows) {
   std::string html = "<table class=\"facts\">\n";
-  for (const auto& [name, value] : rows) html += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
+  for (const auto& [name, value] : rows)
+    html += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
   return html + "</table>\n";
 }
 
 std::string htmlFigure(const Picture& p, const std::string& figures_name) {
-  std::string links = fmt::format("<a href=\"{0}/{1}.png\">PNG</a>, <a href=\"{0}/{1}.svg\">SVG</a>", escaped(figures_name), p.figure.name);
-  for (const auto& [name, content] : p.figure.data) links += fmt::format(", <a href=\"{}/{}\">{}</a>", escaped(figures_name), name, name);
-  if (!p.anchor_trial.empty()) links += fmt::format("; <a href=\"#trial-{0}\">trial {0} in the list</a>", p.anchor_trial);
+  std::string links = fmt::format("<a href=\"{0}/{1}.png\">PNG</a>, <a href=\"{0}/{1}.svg\">SVG</a>",
+                                  escaped(figures_name), p.figure.name);
+  for (const auto& [name, content] : p.figure.data)
+    links += fmt::format(", <a href=\"{}/{}\">{}</a>", escaped(figures_name), name, name);
+  if (!p.anchor_trial.empty())
+    links += fmt::format("; <a href=\"#trial-{0}\">trial {0} in the list</a>", p.anchor_trial);
   return fmt::format(
-      "<h2>{}</h2>\n<figure id=\"figure-{}\">\n<img alt=\"{}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\">\n"
+      "<h2>{}</h2>\n<figure id=\"figure-{}\">\n<img alt=\"{}\" width=\"{}\" height=\"{}\" "
+      "src=\"data:image/png;base64,{}\">\n"
       "<figcaption>{} <span class=\"note\">({})</span></figcaption>\n</figure>\n",
-      escaped(p.figure.title), p.figure.name, escaped(p.figure.title), p.figure.width / 2, p.figure.height / 2, base64(p.png),
-      escaped(p.figure.caption), links);
+      escaped(p.figure.title), p.figure.name, escaped(p.figure.title), p.figure.width / 2, p.figure.height / 2,
+      base64(p.png), escaped(p.figure.caption), links);
 }
 
 std::string buildFacts(const SessionInfo& info) {
@@ -171,7 +178,8 @@ std::string htmlNotDrawn(const std::vector<std::string>& titles) {
 }
 
 std::string htmlDetails(const char* title, const std::string& json) {
-  return json.empty() ? "" : fmt::format("<details><summary>{}</summary><pre>{}</pre></details>\n", title, escaped(json));
+  return json.empty() ? ""
+                      : fmt::format("<details><summary>{}</summary><pre>{}</pre></details>\n", title, escaped(json));
 }
 
 std::string htmlSurvey(const std::vector<SurveyRecord>& answers) {
@@ -180,7 +188,8 @@ std::string htmlSurvey(const std::vector<SurveyRecord>& answers) {
   for (const SurveyRecord& answer : answers) {
     const auto same = [&](const AskedItem& item) {
       const SurveyRecord& other = *item.answers.front();
-      return other.moment == answer.moment && other.item == answer.item && other.task == answer.task && other.condition == answer.condition;
+      return other.moment == answer.moment && other.item == answer.item && other.task == answer.task &&
+             other.condition == answer.condition;
     };
     const auto known = std::find_if(items.begin(), items.end(), same);
     (known == items.end() ? items.emplace_back() : *known).answers.push_back(&answer);
@@ -189,31 +198,36 @@ std::string htmlSurvey(const std::vector<SurveyRecord>& answers) {
                      htmlRow({"question", "task", "condition", "answered", "mean (least to most)", "answers"}, "th");
   for (const AskedItem& item : items) {
     const SurveyRecord& first = *item.answers.front();
-    html += htmlRowOfIntervals(
-        {first.question, first.task, first.condition, std::to_string(answeredBy(item)), meanWords(item), answerList(item)});
+    html += htmlRowOfIntervals({first.question, first.task, first.condition, std::to_string(answeredBy(item)),
+                                meanWords(item), answerList(item)});
   }
-  return html + "</table></div>\n<p class=\"note\">People's own words and ratings, as they gave them; no test is made of them.</p>\n";
+  return html +
+         "</table></div>\n<p class=\"note\">People's own words and ratings, as they gave them; no test is made of "
+         "them.</p>\n";
 }
 
 std::string htmlReplay(const ReplayPage& replay) {
   if (replay.name.empty()) return "";
   return fmt::format(
-      "<p><a href=\"{}\">Play the session</a> in three dimensions; the page needs this file beside it, and nothing else.</p>\n",
+      "<p><a href=\"{}\">Play the session</a> in three dimensions; the page needs this file beside it, and nothing "
+      "else.</p>\n",
       escaped(replay.name));
 }
 
 std::string htmlHead(const std::string& title, const std::string& warning) {
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+      "content=\"width=device-width, "
+      "initial-scale=1\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
       escaped(title), kStyle);
   if (!warning.empty()) html += fmt::format("<p class=\"warning\">{}</p>\n", escaped(warning));
   return html;
 }
 
 std::string htmlFoot(const SessionInfo& info, const std::string& facts) {
-  return "<h2>What was run</h2>\n" + facts + htmlDetails("scene", info.scene_json) + htmlDetails("protocol", info.protocol_json) +
-         htmlDetails("devices", info.devices_json) + htmlDetails("participants", info.participants_json) + "</body>\n</html>\n";
+  return "<h2>What was run</h2>\n" + facts + htmlDetails("scene", info.scene_json) +
+         htmlDetails("protocol", info.protocol_json) + htmlDetails("devices", info.devices_json) +
+         htmlDetails("participants", info.participants_json) + "</body>\n</html>\n";
 }
 
 }  // namespace pincer::tasks

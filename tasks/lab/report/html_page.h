@@ -31,8 +31,8 @@ std::string htmlNotDrawn(const std::vector<std::string>& titles);
 // Something long, folded away; nothing if `json` is empty.
 std::string htmlDetails(const char* title, const std::string& json);
 
-// People's answers beside the trials, a row per question and what it was asked of: how many answered, the mean and the range of numbers, and how
-// often each answer was given. Nothing if nobody was asked, as of simulated people.
+// People's answers beside the trials, a row per question and what it was asked of: how many answered, the mean and the
+// range of numbers, and how often each answer was given. Nothing if nobody was asked, as of simulated people.
 std::string htmlSurvey(const std::vector<SurveyRecord>& answers);
 // A sentence that leads to the page that plays the session; nothing if there is none.
 std::string htmlReplay(const ReplayPage& replay);

@@ -16,7 +16,8 @@ constexpr double kEqualBut = 1e-12;  // of differences that are equal but for it
 std::vector<int> doubledRanks(const std::vector<double>& values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return std::abs(values[i]) < std::abs(values[j]); });
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t i, std::size_t j) { return std::abs(values[i]) < std::abs(values[j]); });
   std::vector<int> ranks(values.size());
   for (std::size_t first = 0; first < order.size();) {
     std::size_t last = first;
@@ -68,7 +69,8 @@ PairedTest comparePairs(const std::vector<double>& a, const std::vector<double>&
   const double sd = std::sqrt(squares / (test.n - 1));
   test.p_wilcoxon = wilcoxonSignedRank(d);
   if (!(sd > kEqualBut * std::abs(test.difference.mean))) {
-    if (test.difference.mean != 0) test.p_t = std::numeric_limits<double>::quiet_NaN();  // t is infinite: it knows nothing of their spread
+    // t is infinite: it knows nothing of their spread
+    if (test.difference.mean != 0) test.p_t = std::numeric_limits<double>::quiet_NaN();
     return test;
   }
   test.effect = test.difference.mean / sd;

@@ -36,9 +36,11 @@ struct Sums {
 
   std::vector<double> means() const {
     const auto per = [](double sum, int n) { return n > 0 ? sum / n : kNoValue; };
-    const int successes = std::max(picked_up, pickups > 0 ? 1 : 0), answers = std::max(answered, alignments > 0 ? 1 : 0);
-    return {per(tries, successes), per(lifts, successes),       per(pickup_time, successes),  per(100.0 * picked_up, pickups),
-            per(error, answered),  per(signed_error, answered), per(alignment_time, answers), per(regrasps, alignments)};
+    const int successes = std::max(picked_up, pickups > 0 ? 1 : 0),
+              answers = std::max(answered, alignments > 0 ? 1 : 0);
+    return {per(tries, successes),           per(lifts, successes),    per(pickup_time, successes),
+            per(100.0 * picked_up, pickups), per(error, answered),     per(signed_error, answered),
+            per(alignment_time, answers),    per(regrasps, alignments)};
   }
 };
 
@@ -49,9 +51,11 @@ const std::vector<FindingMeasure>& findingMeasures() {
       {"tries", "squeezes per sphere picked up", "", "significantly fewer with the CLD", PublishedEffect::kLess, true},
       {"lifts", "lifts per sphere picked up", "", "(not published apart from tries)", PublishedEffect::kNone, true},
       {"pickup_time", "time per sphere picked up", "s", "no change", PublishedEffect::kSame, true},
-      {"picked_up", "spheres picked up within the time", "%", "(not published)", PublishedEffect::kNone, true, Averaged::kPercent},
+      {"picked_up", "spheres picked up within the time", "%", "(not published)", PublishedEffect::kNone, true,
+       Averaged::kPercent},
       {"alignment_error", "mean absolute alignment error", "deg", "no change", PublishedEffect::kSame, false},
-      {"alignment_bias", "mean signed alignment error", "deg", "(not published)", PublishedEffect::kNone, false, Averaged::kAny},
+      {"alignment_bias", "mean signed alignment error", "deg", "(not published)", PublishedEffect::kNone, false,
+       Averaged::kAny},
       {"alignment_time", "time per alignment answered", "s", "7 s more with the CLD", PublishedEffect::kMore, false},
       {"regrasps", "regrasps per alignment", "", "(not published)", PublishedEffect::kNone, false},
   };

@@ -1,7 +1,9 @@
-// person_means: what a participant of the manipulation tasks did in either condition, and whether the conditions differ.
+// person_means: what a participant of the manipulation tasks did in either
+// condition, and whether the conditions differ.
 //
-// A time-out is censored: a count or time per success is (sum over all trials) / (successes), the estimate of largest likelihood when every
-// try succeeds with the same chance; with no success at all it is a lower bound. Training and faults don't count.
+// A time-out is censored: a count or time per success is (sum over all trials) / (successes), the
+// estimate of largest likelihood when every try succeeds with the same chance; with no success at all it
+// is a lower bound. Training and faults don't count.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,7 +13,8 @@
 
 namespace pincer::tasks {
 
-enum class PublishedEffect : std::uint8_t { kLess, kMore, kSame, kNone };  // with the display, against without; kNone: shown only
+// with the display, against without; kNone: shown only
+enum class PublishedEffect : std::uint8_t { kLess, kMore, kSame, kNone };
 
 struct FindingMeasure {
   const char *key, *label, *unit, *published;

@@ -11,7 +11,8 @@ namespace pincer::tasks {
 
 namespace {
 
-std::vector<Picture> wantedPictures(const SessionReader& session, const SessionSummary& summary, const std::vector<TrialRecord>& trials) {
+std::vector<Picture> wantedPictures(const SessionReader& session, const SessionSummary& summary,
+                                    const std::vector<TrialRecord>& trials) {
   std::vector<Picture> pictures;
   std::vector<TrialRecord> pickups, alignments;
   for (const TrialRecord& t : trials) {
@@ -60,7 +61,8 @@ std::string writeFigure(const std::string& directory, const Picture& picture) {
 
 }  // namespace
 
-std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html_path, const ReportOptions& options, ReportFiles& files) {
+std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html_path, const ReportOptions& options,
+                         ReportFiles& files) {
   const std::filesystem::path path(html_path);
   const std::string figures_name = path.stem().string() + "_figures";
   files = {html_path, (path.parent_path() / figures_name).string(), {}, {}};
@@ -81,7 +83,8 @@ ReportFiles writeReport(const SessionReader& session, const std::string& html_pa
   std::vector<Picture> pictures = wantedPictures(session, summary, trials);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
-  const std::string more = htmlNotDrawn(files.not_drawn) + htmlSurvey(session.survey()) + deviceErrorsHtml(deviceErrors(session));
+  const std::string more =
+      htmlNotDrawn(files.not_drawn) + htmlSurvey(session.survey()) + deviceErrorsHtml(deviceErrors(session));
   writeAtomically(html_path, reportHtml(summary, trials, pictures, figures_name, more, options.replay));
   return files;
 }

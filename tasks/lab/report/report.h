@@ -1,10 +1,11 @@
-// report: what happened in a sphere-pickup session, as one HTML file that needs nothing else, and its figures beside it.
+// report: what happened in a sphere-pickup session, as one HTML file that needs
+// nothing else, and its figures beside it.
 //
 //   <name>.html            what was run, the table, all figures inside it as PNG
 //   <name>_figures/        each figure as PNG and the numbers that it draws as CSV
 //
-// Files appear whole or not at all and replace older ones. Needs gnuplot. Throws InputError (path or program, cause, remedy). A session
-// that was killed or aborted gets its report too; it says so at the top.
+// Files appear whole or not at all and replace older ones. Needs gnuplot. Throws InputError (path or program, cause,
+// remedy). A session that was killed or aborted gets its report too; it says so at the top.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -44,12 +45,16 @@ struct Picture {
   std::string svg = {};
 };
 
-// Plots the pictures and writes them, as PNG, SVG and CSV, to the directory that belongs to the page at `html_path`. Returns that directory's
-// name relative to the page and fills in `files`. Pictures that have nothing to draw are taken out; the page says which.
-std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html_path, const ReportOptions& options, ReportFiles& files);
+// Plots the pictures and writes them, as PNG, SVG and CSV, to the directory that belongs to the page at
+// `html_path`. Returns that directory's name relative to the page and fills in `files`. Pictures that have nothing
+// to draw are taken out; the page says which.
+std::string plotAndWrite(std::vector<Picture>& pictures, const std::string& html_path, const ReportOptions& options,
+                         ReportFiles& files);
 
-// The page itself. `figures_name`: the figures' directory relative to the page; `devices`: HTML of what the devices did.
-std::string reportHtml(const SessionSummary& summary, const std::vector<TrialRecord>& trials, const std::vector<Picture>& pictures,
-                       const std::string& figures_name, const std::string& devices = "", const ReplayPage& replay = {});
+// The page itself. `figures_name`: the figures' directory relative to the page;
+// `devices`: HTML of what the devices did.
+std::string reportHtml(const SessionSummary& summary, const std::vector<TrialRecord>& trials,
+                       const std::vector<Picture>& pictures, const std::string& figures_name,
+                       const std::string& devices = "", const ReplayPage& replay = {});
 
 }  // namespace pincer::tasks

@@ -72,7 +72,8 @@ double percentile(std::vector<double> values, double p) {
   PINCER_ASSERT(0 <= p && p <= 1);
   if (values.empty()) return kNaN;
   const double last = static_cast<double>(values.size()) - 1;
-  const auto rank = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(p * static_cast<double>(values.size())) - 1, 0.0, last));
+  const auto rank =
+      static_cast<std::ptrdiff_t>(std::clamp(std::ceil(p * static_cast<double>(values.size())) - 1, 0.0, last));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

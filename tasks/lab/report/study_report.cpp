@@ -11,12 +11,14 @@
 namespace pincer::tasks {
 namespace {
 
-std::vector<Picture> studyPictures(const SessionReader& session, const StudySummary& s, const std::vector<ResponseRecord>& responses) {
+std::vector<Picture> studyPictures(const SessionReader& session, const StudySummary& s,
+                                   const std::vector<ResponseRecord>& responses) {
   std::vector<Picture> pictures;
   if (responses.empty()) return pictures;
   const auto add = [&](Figure figure) { pictures.push_back({std::move(figure), "", ""}); };
   add(headlineFigure(s));
-  const bool has_staircases = std::any_of(s.conditions.begin(), s.conditions.end(), [](const StudyCondition& c) { return c.averaged > 0; });
+  const bool has_staircases =
+      std::any_of(s.conditions.begin(), s.conditions.end(), [](const StudyCondition& c) { return c.averaged > 0; });
   if (has_staircases) {
     add(staircaseFigure(s, responses));
     add(psychometricFigure(s, responses));
@@ -65,7 +67,8 @@ ReportFiles writeStudyReport(const SessionReader& session, const std::string& ht
   std::vector<Picture> pictures = studyPictures(session, summary, responses);
   ReportFiles files;
   const std::string figures_name = plotAndWrite(pictures, html_path, options, files);
-  const std::string more = htmlNotDrawn(files.not_drawn) + htmlSurvey(session.survey()) + deviceErrorsHtml(deviceErrors(session));
+  const std::string more =
+      htmlNotDrawn(files.not_drawn) + htmlSurvey(session.survey()) + deviceErrorsHtml(deviceErrors(session));
   writeAtomically(html_path, studyHtml(summary, pictures, figures_name, more, options.replay));
   return files;
 }

@@ -12,7 +12,8 @@
 
 namespace pincer::tasks {
 
-ReportFiles writeStudyReport(const SessionReader& session, const std::string& html_path, const ReportOptions& options = {});
+ReportFiles writeStudyReport(const SessionReader& session, const std::string& html_path,
+                             const ReportOptions& options = {});
 
 Figure headlineFigure(const StudySummary& summary);
 Figure staircaseFigure(const StudySummary& summary, const std::vector<ResponseRecord>& responses);

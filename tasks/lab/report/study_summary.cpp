@@ -30,14 +30,16 @@ struct StudyKind {
   double level_scale;
   Averaged averaged = Averaged::kPositive;
 };
-constexpr std::array<StudyKind, 5> kStudyKinds{{{kCountedInSegments, "threshold", "segments", 1, "°", 180 / M_PI},
-                                                {"backlash-discrimination", "threshold", "mm", 1e3, "mm", 1e3},
-                                                {"delay-discrimination", "threshold", "ms", 1e3, "ms", 1e3},
-                                                {"repeated-localisation", "mean absolute error", "mm", 1e3, "mm", 1e3},
-                                                {"shape-identification", "right answers", "%", 100, "%", 100, Averaged::kShare}}};
+constexpr std::array<StudyKind, 5> kStudyKinds{
+    {{kCountedInSegments, "threshold", "segments", 1, "°", 180 / M_PI},
+     {"backlash-discrimination", "threshold", "mm", 1e3, "mm", 1e3},
+     {"delay-discrimination", "threshold", "ms", 1e3, "ms", 1e3},
+     {"repeated-localisation", "mean absolute error", "mm", 1e3, "mm", 1e3},
+     {"shape-identification", "right answers", "%", 100, "%", 100, Averaged::kShare}}};
 
 const StudyKind* kindOf(const std::string& task) {
-  const auto found = std::find_if(kStudyKinds.begin(), kStudyKinds.end(), [&](const StudyKind& k) { return task == k.task; });
+  const auto found =
+      std::find_if(kStudyKinds.begin(), kStudyKinds.end(), [&](const StudyKind& k) { return task == k.task; });
   return found == kStudyKinds.end() ? nullptr : &*found;
 }
 
@@ -74,7 +76,8 @@ std::vector<StudyCondition> conditionsOf(const JsonValue& study, const std::vect
     }
   }
   for (const ResponseRecord& r : responses) {
-    const bool known = std::any_of(conditions.begin(), conditions.end(), [&](const StudyCondition& c) { return c.name == r.condition; });
+    const bool known = std::any_of(conditions.begin(), conditions.end(),
+                                   [&](const StudyCondition& c) { return c.name == r.condition; });
     if (known) continue;
     StudyCondition condition;
     condition.name = condition.label = r.condition;
@@ -117,9 +120,11 @@ double thresholdOf(const std::string& task, const std::vector<const ResponseReco
   return sum / averaged;
 }
 
-double headlineOf(const std::string& task, const StudyCondition& condition, const std::vector<const ResponseRecord*>& trials) {
+double headlineOf(const std::string& task, const StudyCondition& condition,
+                  const std::vector<const ResponseRecord*>& trials) {
   if (condition.averaged > 0) return thresholdOf(task, trials, condition.averaged);
-  if (task == "repeated-localisation") return meanOf(trials, [](const ResponseRecord& r) { return std::abs(r.answer_value - r.level); });
+  if (task == "repeated-localisation")
+    return meanOf(trials, [](const ResponseRecord& r) { return std::abs(r.answer_value - r.level); });
   return meanOf(trials, [](const ResponseRecord& r) { return static_cast<double>(r.correct); });
 }
 
@@ -151,7 +156,8 @@ std::string estimateText(const Estimate& e, double scale, int digits, Averaged a
   if (e.n == 0) return "–";
   if (e.n < 2 || !(e.half_width > 0)) return fmt::format("{:.{}f}", scale * e.mean, digits);
   const Interval interval = intervalOf(e, averaged);
-  return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", scale * e.mean, digits, scale * interval.low, digits, scale * interval.high, digits);
+  return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", scale * e.mean, digits, scale * interval.low, digits,
+                     scale * interval.high, digits);
 }
 
 // True if the published figure lies in pincer's interval; where not, how far off the mean is.
@@ -182,7 +188,8 @@ double levelShown(const StudySummary& s, double headline) {
 
 bool isStudy(const std::string& task) { return kindOf(task) != nullptr; }
 
-StudySummary summariseStudy(const SessionInfo& info, const std::string& name, const std::vector<ResponseRecord>& responses) {
+StudySummary summariseStudy(const SessionInfo& info, const std::string& name,
+                            const std::vector<ResponseRecord>& responses) {
   StudySummary s{name, info, "", "", "", info.participants_hash, 0, 0, {}, {}};
   const StudyKind* kind = kindOf(info.task);
   if (!kind) throw InputError(fmt::format("{}: a session of {}, which isn't a psychophysical study.", name, info.task));
@@ -236,11 +243,14 @@ std::vector<std::string> studyTableRow(const StudySummary& s, const StudyConditi
 
 std::string studyNote(const StudySummary& s) {
   std::string note =
-      "In brackets the 95 % confidence interval over participants (Student t, of the logarithm; of shares the logit). Published: A. J. "
+      "In brackets the 95 % confidence interval over participants (Student t, of the logarithm; of shares the logit). "
+      "Published: A. J. "
       "Doxon, doctoral dissertation, University of "
-      "Utah, 2014, with people; here the participants are simulated, their parameters fixed before the study (fingerprint ";
+      "Utah, 2014, with people; here the participants are simulated, their parameters fixed before the study "
+      "(fingerprint ";
   note += s.fingerprint +
-          "). Follows: whether the published figure lies within the interval; where not, pincer's mean over it. No parameter was changed "
+          "). Follows: whether the published figure lies within the interval; where not, pincer's mean over it. No "
+          "parameter was changed "
           "to meet "
           "one: a no is a result.";
   std::int64_t lost = 0, unanswered = 0;
@@ -250,27 +260,34 @@ std::string studyNote(const StudySummary& s) {
   }
   if (std::any_of(s.conditions.begin(), s.conditions.end(), isUnsettled)) {
     note += fmt::format(
-        " ≥ (of segments ≤) marks conditions with fewer than {:.0f} % right answers: their staircases ended before they had risen to a "
+        " ≥ (of segments ≤) marks conditions with fewer than {:.0f} % right answers: their staircases ended before "
+        "they had risen to a "
         "threshold.",
         100 * kSettled);
   }
-  if (lost > 0) note += fmt::format(" {} found no threshold and {} left out.", counted(lost, "staircase"), lost == 1 ? "is" : "are");
+  if (lost > 0)
+    note +=
+        fmt::format(" {} found no threshold and {} left out.", counted(lost, "staircase"), lost == 1 ? "is" : "are");
   if (unanswered > 0) note += fmt::format(" {} ended without an answer.", counted(unanswered, "trial"));
   return note;
 }
 
 std::string studyFinding(const StudySummary& s) {
   const bool is_simulated = s.info.devices_json.find("\"simulated\"") != std::string::npos;
-  std::string words = fmt::format("{} {}{}.", s.participants, is_simulated ? "simulated " : "", s.participants == 1 ? "person" : "people");
+  std::string words = fmt::format("{} {}{}.", s.participants, is_simulated ? "simulated " : "",
+                                  s.participants == 1 ? "person" : "people");
   std::string name = s.headline.name;
   name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   for (const StudyCondition& c : s.conditions) {
     if (c.headline.n == 0) continue;
     const std::string of = s.conditions.size() > 1 ? fmt::format(", {}", c.label.empty() ? c.name : c.label) : "";
     words += fmt::format(" {}{}: {} {}", name, of, studyTableRow(s, c)[1], s.headline.unit);
-    words += std::isnan(c.published) ? "." : fmt::format("; published {:.3g} {}.", s.headline.scale * c.published, s.headline.unit);
+    words += std::isnan(c.published)
+                 ? "."
+                 : fmt::format("; published {:.3g} {}.", s.headline.scale * c.published, s.headline.unit);
   }
-  const bool lone = std::all_of(s.conditions.begin(), s.conditions.end(), [](const StudyCondition& c) { return c.headline.n < 2; });
+  const bool lone =
+      std::all_of(s.conditions.begin(), s.conditions.end(), [](const StudyCondition& c) { return c.headline.n < 2; });
   if (lone) return words + " One person says nothing about others.";
   return words + " In brackets the 95 % interval of the mean over people.";
 }
@@ -284,8 +301,8 @@ std::string formatStudyTable(const StudySummary& s) {
   std::vector<std::size_t> widths(rows[0].size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], characters(row[i]));
-  std::string text = fmt::format("{}, seed {}: {}, {}\n\n", printable(s.info.task), s.info.seed, counted(s.participants, "participant"),
-                                 counted(s.trials, "trial"));
+  std::string text = fmt::format("{}, seed {}: {}, {}\n\n", printable(s.info.task), s.info.seed,
+                                 counted(s.participants, "participant"), counted(s.trials, "trial"));
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::string gap(widths[i] - characters(row[i]), ' ');
@@ -314,7 +331,12 @@ std::string studySummaryJson(const StudySummary& s) {
     estimateJson(json, "tactor_speed_m_per_s", c.tactor_speed);
     json.key("people").beginArray();
     for (const StudyPerson& person : c.people) {
-      json.beginObject().key("participant").value(person.participant).key("headline_si").value(person.headline).endObject();
+      json.beginObject()
+          .key("participant")
+          .value(person.participant)
+          .key("headline_si")
+          .value(person.headline)
+          .endObject();
     }
     json.endArray().endObject();
   }

@@ -1,12 +1,14 @@
 // study_summary: what a psychophysical session found, per condition.
 //
-// Each task has one headline figure, taken per participant and then averaged with its 95 % interval over the participants (statistics.h):
+// Each task has one headline figure, taken per participant and then averaged with its 95 %
+// interval over the participants (statistics.h):
 //
-//   discriminations        threshold: mean of the last reversals of the staircase; of the polygons in segments, a person's mean of n, never the n
-//                          of a mean of angles (tasks/lab/study/arc_segments.h)
+//   discriminations        threshold: mean of the last reversals of the staircase; of the polygons in segments, a
+//                          person's mean of n, never the n of a mean of angles (tasks/lab/study/arc_segments.h)
 //   repeated-localisation  mean absolute error of the places named
 //   shape-identification   share of right answers
-// All other figures are participants' means likewise. Trials that weren't answered count as trials and for nothing else.
+// All other figures are participants' means likewise. Trials that weren't
+// answered count as trials and for nothing else.
 #pragma once
 #include <string>
 #include <vector>
@@ -43,8 +45,8 @@ struct StudyCondition {
   Estimate finger_speed, tactor_speed;  // [m/s]
 };
 
-// True if its staircases ended before they had risen to a threshold: one that settles is answered right in 70.7 % of its trials and more; at chance
-// it has only begun to rise from where it started.
+// True if its staircases ended before they had risen to a threshold: one that settles is answered right in 70.7 % of
+// its trials and more; at chance it has only begun to rise from where it started.
 bool isUnsettled(const StudyCondition& condition);
 
 struct StudySummary {
@@ -63,14 +65,17 @@ double levelShown(const StudySummary& summary, double headline);
 // True if the session is of a task that this summary is for.
 bool isStudy(const std::string& task);
 
-// Throws InputError for a session of something else, and a protocol that can't be read; `name` stands for the session there.
-StudySummary summariseStudy(const SessionInfo& info, const std::string& name, const std::vector<ResponseRecord>& responses);
+// Throws InputError for a session of something else, and a protocol that can't be
+// read; `name` stands for the session there.
+StudySummary summariseStudy(const SessionInfo& info, const std::string& name,
+                            const std::vector<ResponseRecord>& responses);
 StudySummary summariseStudy(const SessionReader& session, const std::vector<ResponseRecord>& responses);
 
 std::vector<std::string> studyTableHeads(const StudySummary& summary);
 std::vector<std::string> studyTableRow(const StudySummary& summary, const StudyCondition& condition);
 std::string studyNote(const StudySummary& summary);
-// The outcome in words that need no table: who took part, and each condition's figure with its interval beside the published one.
+// The outcome in words that need no table: who took part, and each condition's figure
+// with its interval beside the published one.
 std::string studyFinding(const StudySummary& summary);
 
 std::string formatStudyTable(const StudySummary& summary);  // for a terminal

@@ -44,11 +44,12 @@ std::string pairRow(const Compared& compared, std::size_t a, std::size_t b) {
   const std::vector<double>&first = compared.groups[a], &second = compared.groups[b];
   const PairedTest paired = comparePairs(first, second);
   const MeansTest student = studentTest(first, second);
-  return htmlRow(
-      {fmt::format("{} - {}", compared.names[b], compared.names[a]), fmt::format("{:.3g}", student.difference),
-       pText(tukeyPair(compared.groups, a, b)), fmt::format("t({:g}) = {:.2f}, p {}", student.dof, student.t, pText(student.p)),
-       pText(welchTest(first, second).p), pText(paired.p_t), std::isfinite(paired.effect) ? fmt::format("{:.2f}", paired.effect) : "–"},
-      "td");
+  return htmlRow({fmt::format("{} - {}", compared.names[b], compared.names[a]),
+                  fmt::format("{:.3g}", student.difference), pText(tukeyPair(compared.groups, a, b)),
+                  fmt::format("t({:g}) = {:.2f}, p {}", student.dof, student.t, pText(student.p)),
+                  pText(welchTest(first, second).p), pText(paired.p_t),
+                  std::isfinite(paired.effect) ? fmt::format("{:.2f}", paired.effect) : "–"},
+                 "td");
 }
 
 }  // namespace
@@ -58,15 +59,19 @@ std::string studyTestsHtml(const StudySummary& s) {
   if (compared.groups.size() < 2) return "";
   std::string html = "<h2>Do the conditions differ?</h2>\n<p>" +
                      varianceText("One-way analysis of variance", oneWayVariance(compared.groups)) + "; " +
-                     varianceText("repeated measures", repeatedMeasures(compared.groups)) + ".</p>\n<div class=\"wide\"><table>\n";
-  html += htmlRow(
-      {"pair", fmt::format("difference [{}]", s.headline.unit), "Tukey, p", "Student, unpaired", "Welch, p", "paired t, p", "d_z"}, "th");
+                     varianceText("repeated measures", repeatedMeasures(compared.groups)) +
+                     ".</p>\n<div class=\"wide\"><table>\n";
+  html += htmlRow({"pair", fmt::format("difference [{}]", s.headline.unit), "Tukey, p", "Student, unpaired", "Welch, p",
+                   "paired t, p", "d_z"},
+                  "th");
   for (std::size_t a = 0; a < compared.groups.size(); ++a) {
     for (std::size_t b = a + 1; b < compared.groups.size(); ++b) html += pairRow(compared, a, b);
   }
   return html +
-         "</table></div>\n<p class=\"note\">As published: the one-way analysis, Tukey and Student take one person's figures for those of "
-         "different people. Repeated measures and the paired test don't; d_z is the mean of the people's differences over their standard "
+         "</table></div>\n<p class=\"note\">As published: the one-way analysis, Tukey and Student take one person's "
+         "figures for those of "
+         "different people. Repeated measures and the paired test don't; d_z is the mean of the people's differences "
+         "over their standard "
          "deviation.</p>\n";
 }
 

@@ -107,7 +107,8 @@ std::string conditionLabel(const std::string& condition) {
 }
 
 SessionSummary summariseSession(const SessionReader& session) {
-  SessionSummary s{session.path(), session.info(), session.state(), session.startedUtc(), session.warning(), 0, 0, {}, {}, {}, {}};
+  SessionSummary s{
+      session.path(), session.info(), session.state(), session.startedUtc(), session.warning(), 0, 0, {}, {}, {}, {}};
   const std::vector<TrialRecord> all = session.trials();
   const auto trials = select(all, [](const TrialRecord& t) { return t.task == "sphere-pickup" && t.training == 0; });
   std::set<std::int64_t> participants;
@@ -158,7 +159,8 @@ std::vector<std::string> tableHeads() {
 }
 
 std::vector<std::string> tableRow(const CellSummary& cell) {
-  std::vector<std::string> row{conditionLabel(cell.condition), cell.allFrictions() ? "all" : fmt::format("{:.2f}", cell.mu_s),
+  std::vector<std::string> row{conditionLabel(cell.condition),
+                               cell.allFrictions() ? "all" : fmt::format("{:.2f}", cell.mu_s),
                                fmt::format("{}", cell.trials)};
   row.push_back(fmt::format("{:.0f} %", 100 * cell.successRate()));
   row.push_back(fmt::format("{}", cell.timeouts));
@@ -171,7 +173,9 @@ std::string tableNote(const SessionSummary& s) {
   std::string note = fmt::format("Mean and 95 % confidence interval (Student t, of the logarithm) over {}.",
                                  s.participants > 1 ? "the participants' means" : "the trials of the one participant");
   note += " A value without one: all are equal, or there is only one.";
-  const auto has = [&](auto of) { return std::any_of(s.cells.begin(), s.cells.end(), [of](const CellSummary& c) { return c.*of > 0; }); };
+  const auto has = [&](auto of) {
+    return std::any_of(s.cells.begin(), s.cells.end(), [of](const CellSummary& c) { return c.*of > 0; });
+  };
   if (has(&CellSummary::timeouts))
     note += " ≥ marks lower bounds: at least one trial of the cell timed out, so that no interval can be told.";
   if (has(&CellSummary::faults)) note += " Trials that ended in a fault are left out of the means.";

@@ -1,8 +1,9 @@
 // summary: what a session found, per condition and friction. Training doesn't count.
 //
-// Mean and 95 % confidence interval of each measure (statistics.h). The unit is the trial with one participant, and the participant's mean
-// with several: trials of one person aren't independent. A trial that ended in a fault is counted but left out of the means. A time-out
-// cuts a trial short, so the means of a cell that holds one are lower bounds and are marked with a `>=` sign.
+// Mean and 95 % confidence interval of each measure (statistics.h). The unit is the trial with one participant,
+// and the participant's mean with several: trials of one person aren't independent. A trial that ended in a fault
+// is counted but left out of the means. A time-out cuts a trial short, so the means of a cell that holds one are
+// lower bounds and are marked with a `>=` sign.
 #pragma once
 #include <array>
 #include <string>

@@ -59,7 +59,8 @@ std::string summaryJson(const SessionSummary& s) {
                              {"p_t", row.test.p_t},
                              {"p_wilcoxon", row.test.p_wilcoxon}});
   }
-  return json.dump(2, ' ', true, Json::error_handler_t::replace);  // a name may hold what a terminal obeys, and bytes that are no UTF-8
+  // a name may hold what a terminal obeys, and bytes that are no UTF-8
+  return json.dump(2, ' ', true, Json::error_handler_t::replace);
 }
 
 }  // namespace pincer::tasks

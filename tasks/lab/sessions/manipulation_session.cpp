@@ -22,12 +22,15 @@ class StudySessionSink final : public RecordSink {
  public:
   // Keeps every `stride`-th tick; 0: none.
   // `inputs`: and the inputs of all, of hands that nothing else can bring back.
-  StudySessionSink(SessionWriter& writer, std::int64_t stride, bool inputs) : writer_(writer), stride_(stride), inputs_(inputs) {}
+  StudySessionSink(SessionWriter& writer, std::int64_t stride, bool inputs)
+      : writer_(writer), stride_(stride), inputs_(inputs) {}
   bool wantsInputs() const override { return inputs_; }
   void hands(const HandsRecord& hands) override { writer_.addHands(hands); }
-  void input(const InputRecord& input) override { writer_.pushInput(input); }  // a lost one is a gap in the ticks, which a replay names
+  // a lost one is a gap in the ticks, which a replay names
+  void input(const InputRecord& input) override { writer_.pushInput(input); }
   bool wantsSample(std::int64_t tick) const override { return stride_ > 0 && tick % stride_ == 0; }
-  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
+  // a lost one is counted by the store
+  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }
   void event(const EventRecord& event) override { writer_.addEvent(event); }
   void reading(const ReadingRecord& reading) override { writer_.addReading(reading); }
   void trial(const TrialRecord& trial) override { writer_.finishTrial(trial); }
@@ -47,18 +50,24 @@ std::string devicesJson(const ManipulationSessionOptions& o) {
       .value(o.devices == "mouse" ? "simulated" : o.devices)
       .key("rate")
       .value(o.servo.rate);
-  return json.key("sample_rate").value(o.sample_rate).key("real_time").value(o.servo.clock != ServoClock::kVirtual).endObject().text();
+  return json.key("sample_rate")
+      .value(o.sample_rate)
+      .key("real_time")
+      .value(o.servo.clock != ServoClock::kVirtual)
+      .endObject()
+      .text();
 }
 
 std::size_t plannedTrials(const ManipulationSessionOptions& options) {
   const auto trials = manipulationTrials(options.study);
   const auto& person = options.host.person;
-  return static_cast<std::size_t>(
-      std::count_if(trials.begin(), trials.end(), [&](const ManipulationTrial& t) { return !person || t.participant() == *person; }));
+  return static_cast<std::size_t>(std::count_if(
+      trials.begin(), trials.end(), [&](const ManipulationTrial& t) { return !person || t.participant() == *person; }));
 }
 
 // Asks people what the study has for this moment. False: the person has left.
-bool askSurvey(const ManipulationSessionOptions& options, SessionWriter& writer, const std::string& path, const std::string& moment) {
+bool askSurvey(const ManipulationSessionOptions& options, SessionWriter& writer, const std::string& path,
+               const std::string& moment) {
   if (!options.host.ask || !options.host.person) return true;
   std::vector<std::string> tasks;
   for (const HandTask task : options.study.tasks) tasks.emplace_back(kHandTaskNames[static_cast<std::size_t>(task)]);
@@ -66,12 +75,15 @@ bool askSurvey(const ManipulationSessionOptions& options, SessionWriter& writer,
   for (const PickupCondition c : options.study.conditions)
     conditions.push_back({nameOf(c), c == PickupCondition::kForce ? "force only" : "display and force"});
   const SurveyPlan& plan = options.study.session;
-  const SurveyForm form{questionsOf(moment == "before" ? plan.demographics : plan.survey, tasks, conditions), moment, *options.host.person};
-  return fillForm(form, SessionReader(path).survey(), options.host.ask, [&](const SurveyRecord& answer) { writer.addSurvey(answer); });
+  const SurveyForm form{questionsOf(moment == "before" ? plan.demographics : plan.survey, tasks, conditions), moment,
+                        *options.host.person};
+  return fillForm(form, SessionReader(path).survey(), options.host.ask,
+                  [&](const SurveyRecord& answer) { writer.addSurvey(answer); });
 }
 
-ManipulationSessionResult runInto(SessionWriter& writer, const std::string& path, const ManipulationSessionOptions& options,
-                                  StudyHooks hooks, const std::atomic<bool>& interrupted) {
+ManipulationSessionResult runInto(SessionWriter& writer, const std::string& path,
+                                  const ManipulationSessionOptions& options, StudyHooks hooks,
+                                  const std::atomic<bool>& interrupted) {
   const std::int64_t stride = options.sample_rate > 0 ? std::lround(options.servo.rate) / options.sample_rate : 0;
   StudySessionSink sink(writer, stride, static_cast<bool>(options.host.hands));
   ManipulationSessionResult result;
@@ -132,7 +144,8 @@ SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& o) {
 void requirePlanned(const SessionReader& session, std::int64_t trial, std::size_t planned) {
   if (trial >= 0 && trial < static_cast<std::int64_t>(planned)) return;
   throw InputError(
-      fmt::format("{}: trial {} isn't one of its plan, which has trials 1 to {}. The file is damaged, or something else than pincer "
+      fmt::format("{}: trial {} isn't one of its plan, which has trials 1 to {}. The file is damaged, or something "
+                  "else than pincer "
                   "changed it. Take a copy of before.",
                   session.path(), trial + 1, planned));
 }
@@ -141,21 +154,23 @@ void validate(const ManipulationSessionOptions& options) {
   validate(options.study);
   const int rate = options.sample_rate;
   if (rate == 0 || (rate >= 1 && rate <= 1000 && std::fmod(options.servo.rate, rate) == 0)) return;
-  throw InputError(
-      fmt::format("run: sample_rate = {} is out of range: 0 for none, or an integer in [1, 1000] Hz that divides the {:g} "
-                  "ticks of a second. Take for example 1000, 500, 200 or 100.",
-                  rate, options.servo.rate));
+  throw InputError(fmt::format(
+      "run: sample_rate = {} is out of range: 0 for none, or an integer in [1, 1000] Hz that divides the {:g} "
+      "ticks of a second. Take for example 1000, 500, 200 or 100.",
+      rate, options.servo.rate));
 }
 
 ManipulationSessionResult runManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
-                                                 const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
+                                                 const std::atomic<bool>& interrupted,
+                                                 const TrialProgressLine& progress) {
   validate(options);
   SessionWriter writer = SessionWriter::create(path, manipulationSessionInfo(options), storeOptions(options.servo));
   return runInto(writer, path, options, {{}, progress, {}, {}}, interrupted);
 }
 
 ManipulationSessionResult resumeManipulationSession(const ManipulationSessionOptions& wanted, const std::string& path,
-                                                    const std::atomic<bool>& interrupted, const TrialProgressLine& progress) {
+                                                    const std::atomic<bool>& interrupted,
+                                                    const TrialProgressLine& progress) {
   ManipulationSessionOptions options = wanted;
   const SessionInfo info = SessionReader(path).info();
   options.study = parseStudyFile(info.protocol_json, path + ": protocol");

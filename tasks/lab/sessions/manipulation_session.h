@@ -15,8 +15,9 @@ struct ManipulationSessionOptions {
   std::string devices = "simulated";  // who brings arms and displays, as the session says it
   TrialHost host = {};                // who watches, and whose hands they are
   std::string claims;                 // fingerprint of the list that is to be judged by the session; empty: none
-  int sample_rate =
-      200;  // of the ticks that are kept [Hz], 0 (none) .. 1000; divides the servo's rate. A trial's row always counts every tick.
+  // of the ticks that are kept [Hz], 0 (none) .. 1000; divides the servo's
+  // rate. A trial's row always counts every tick.
+  int sample_rate = 200;
 };
 
 // Throws InputError naming the first value out of range, its range and the remedy.
@@ -36,14 +37,17 @@ struct ManipulationSessionResult {
 
 using TrialProgressLine = std::function<void(const TrialProgress&)>;
 
-// Runs the study and writes it to the new file `path`. Throws InputError for bad options, a bad object, or a file that can't be written.
+// Runs the study and writes it to the new file `path`. Throws InputError for bad options, a bad
+// object, or a file that can't be written.
 ManipulationSessionResult runManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
-                                                 const std::atomic<bool>& interrupted, const TrialProgressLine& progress);
+                                                 const std::atomic<bool>& interrupted,
+                                                 const TrialProgressLine& progress);
 
-// Goes on with a session that was interrupted or killed: the study is the one in the file, finished trials stay, what is left of an
-// unfinished one is removed. Throws InputError; also when the session is complete.
-// `options.study` doesn't count.
+// Goes on with a session that was interrupted or killed: the study is the one in the file, finished trials
+// stay, what is left of an unfinished one is removed. Throws InputError; also when the session is
+// complete. `options.study` doesn't count.
 ManipulationSessionResult resumeManipulationSession(const ManipulationSessionOptions& options, const std::string& path,
-                                                    const std::atomic<bool>& interrupted, const TrialProgressLine& progress);
+                                                    const std::atomic<bool>& interrupted,
+                                                    const TrialProgressLine& progress);
 
 }  // namespace pincer::tasks

@@ -1,5 +1,5 @@
-// observer_fields: the parameters of the simulated participants of the studies with one finger, each named once: written into the session and
-// hashed before a study, never read. A list calls visit(key, field).
+// observer_fields: the parameters of the simulated participants of the studies with one finger, each named once:
+// written into the session and hashed before a study, never read. A list calls visit(key, field).
 #pragma once
 #include "pincer/tasks/lab/participants/place_observer.h"
 #include "pincer/tasks/lab/participants/shape_explorer.h"

@@ -32,8 +32,12 @@ struct StoredTrial {
 class ComparingSink final : public RecordSink {
  public:
   ComparingSink(const SessionReader& session, const StoredTrial& stored, ReplayResult& result)
-      : stored_(stored), result_(result), events_(session.events(stored.row.trial)), readings_(session.readings(stored.row.trial)) {
-    session.forEachSample({.trial = stored.row.trial}, [this](const SampleRecord& sample) { samples_.push_back(sample); });
+      : stored_(stored),
+        result_(result),
+        events_(session.events(stored.row.trial)),
+        readings_(session.readings(stored.row.trial)) {
+    session.forEachSample({.trial = stored.row.trial},
+                          [this](const SampleRecord& sample) { samples_.push_back(sample); });
   }
   bool wantsInputs() const override { return stored_.hands.has_value(); }
   void input(const InputRecord& input) override {
@@ -51,15 +55,18 @@ class ComparingSink final : public RecordSink {
   void reading(const ReadingRecord& reading) override { compareNext("reading", readings_, next_reading_, reading); }
   void trial(const TrialRecord& trial) override {
     ++result_.trials;
-    if (next_event_ < events_.size()) report(fmt::format("event {} didn't come again", next_event_), -1, trial.duration);
-    if (next_reading_ < readings_.size()) report(fmt::format("reading {} didn't come again", next_reading_), -1, trial.duration);
+    if (next_event_ < events_.size())
+      report(fmt::format("event {} didn't come again", next_event_), -1, trial.duration);
+    if (next_reading_ < readings_.size())
+      report(fmt::format("reading {} didn't come again", next_reading_), -1, trial.duration);
     report(differenceOf(stored_.row, trial), -1, trial.duration);
     endTooSoon();
   }
   // After the last tick, when no row follows.
   void endTooSoon() {
     const char* what = "the trial ended before this tick";
-    if (next_input_ < stored_.inputs.size()) report(what, stored_.inputs[next_input_].tick, stored_.inputs[next_input_].time);
+    if (next_input_ < stored_.inputs.size())
+      report(what, stored_.inputs[next_input_].tick, stored_.inputs[next_input_].time);
     if (next_ < samples_.size()) report(what, samples_[next_].tick, samples_[next_].time);
   }
 
@@ -92,7 +99,8 @@ void compareBuilds(const SessionInfo& then, ReplayResult& result) {
   SessionInfo now;
   tellBuild(now);
   if (then.sources != now.sources || then.version != now.version) {
-    result.notes.push_back(fmt::format("The session was made by {}; this is {}. Their bits may differ.", programOf(then), programOf(now)));
+    result.notes.push_back(
+        fmt::format("The session was made by {}; this is {}. Their bits may differ.", programOf(then), programOf(now)));
   }
   result.surroundings = surroundingsThatDiffer(then, now);
 }
@@ -107,13 +115,15 @@ void requireReplayable(const SessionReader& session, bool simulated, bool other_
   SessionInfo now;
   tellBuild(now);
   if (!other_version && !isByThisProgram(session.info(), now)) {
-    refuse(
-        fmt::format("it was made by {}, and this is {}: the bits may differ. Replay it with the program that made it, or with "
-                    "--other-version to see where they do.",
-                    programOf(session.info()), programOf(now)));
+    refuse(fmt::format(
+        "it was made by {}, and this is {}: the bits may differ. Replay it with the program that made it, or with "
+        "--other-version to see where they do.",
+        programOf(session.info()), programOf(now)));
   }
   if (!simulated && !session.keepsInputs()) {
-    refuse("it was recorded by a pincer that didn't keep what people's hands did. Its tables and its report are as good as ever.");
+    refuse(
+        "it was recorded by a pincer that didn't keep what people's hands did. Its tables and its report are as good "
+        "as ever.");
   }
 }
 
@@ -126,7 +136,8 @@ std::vector<StoredTrial> wantedTrials(const SessionReader& session, std::optiona
   }
   for (const HandsRecord& hands : simulated ? std::vector<HandsRecord>() : session.hands()) {
     if (!isWanted(hands.trial)) continue;
-    const auto same = std::find_if(wanted.begin(), wanted.end(), [&](const StoredTrial& t) { return t.row.trial == hands.trial; });
+    const auto same =
+        std::find_if(wanted.begin(), wanted.end(), [&](const StoredTrial& t) { return t.row.trial == hands.trial; });
     StoredTrial& stored = same == wanted.end() ? wanted.emplace_back(StoredTrial{{}, false}) : *same;
     stored.row.trial = hands.trial;
     stored.hands = hands;
@@ -177,9 +188,9 @@ class Replayer {
   bool replayRecorded(const ManipulationTrial& spec, StoredTrial& stored, ReplayResult& result) {
     const bool whole = stored.hands && readInputs(session_, stored);
     if (!whole || stored.inputs.empty()) {
-      result.notes.push_back(
-          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.",
-                      stored.row.trial + 1, stored.inputs.size()));
+      result.notes.push_back(fmt::format(
+          "Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.",
+          stored.row.trial + 1, stored.inputs.size()));
       stored.finished = false;
       if (stored.inputs.empty()) return true;
     }
@@ -205,7 +216,8 @@ class Replayer {
 
 }  // namespace
 
-ReplayResult replaySession(const SessionReader& session, const ReplayOptions& options, const std::atomic<bool>& interrupted,
+ReplayResult replaySession(const SessionReader& session, const ReplayOptions& options,
+                           const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t, std::int64_t)>& progress, const ReplayRun& run,
                            const FingerReplayRun& finger_run) {
   const bool simulated = session.info().devices_json.find("\"arms\": \"simulated\"") != std::string::npos;

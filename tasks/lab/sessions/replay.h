@@ -1,9 +1,10 @@
 // replay: runs a session again and compares it, tick by tick, to the bit.
 //
-// A session with simulated participants holds its inputs as its protocol and seeds: devices and participants are deterministic, so that every
-// sample of theirs comes again through the same tick. Of people every tick's inputs are kept (InputRecord): what arms and displays said and
-// what the hand meant; they are given to the same tick again, also those of a trial that was cut short. Each kept sample, each tick's input
-// and outcome, each event, reading and trial's row is compared; how long ticks took is not.
+// A session with simulated participants holds its inputs as its protocol and seeds: devices and participants are
+// deterministic, so that every sample of theirs comes again through the same tick. Of people every tick's inputs are
+// kept (InputRecord): what arms and displays said and what the hand meant; they are given to the same tick again, also
+// those of a trial that was cut short. Each kept sample, each tick's input and outcome, each event, reading and trial's
+// row is compared; how long ticks took is not.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -42,10 +43,12 @@ struct ReplayOptions {
   bool other_version = false;           // also of a session that a program with other sources made
 };
 
-// Every trial, or only one. Stops at the first difference. Throws InputError for a session that can't be replayed: of another task, without
-// people's inputs, with doubled trials, by a program of another version or with other sources (build_info.h).
-ReplayResult replaySession(const SessionReader& session, const ReplayOptions& options, const std::atomic<bool>& interrupted,
-                           const std::function<void(std::int64_t done, std::int64_t total)>& progress = {}, const ReplayRun& run = {},
-                           const FingerReplayRun& finger_run = {});
+// Every trial, or only one. Stops at the first difference. Throws InputError for a session that can't be
+// replayed: of another task, without people's inputs, with doubled trials, by a program of another
+// version or with other sources (build_info.h).
+ReplayResult replaySession(const SessionReader& session, const ReplayOptions& options,
+                           const std::atomic<bool>& interrupted,
+                           const std::function<void(std::int64_t done, std::int64_t total)>& progress = {},
+                           const ReplayRun& run = {}, const FingerReplayRun& finger_run = {});
 
 }  // namespace pincer::tasks

@@ -21,7 +21,8 @@ std::vector<std::pair<std::string, std::string>> comparable(const Record& record
     if (column == "tick_us" || column == "tick_median_us" || column == "tick_p999_us") return;
     if constexpr (std::is_floating_point_v<Field>) {
       values.emplace_back(column,
-                          field != field ? std::string("nan") : fmt::format("{}", field + 0));  // the store has one zero, -0 + 0 as well
+                          // the store has one zero, -0 + 0 as well
+                          field != field ? std::string("nan") : fmt::format("{}", field + 0));
     } else {
       values.emplace_back(column, fmt::format("{}", field));
     }
@@ -29,7 +30,8 @@ std::vector<std::pair<std::string, std::string>> comparable(const Record& record
   return values;
 }
 
-// 16 hexadecimal digits (FNV-1a) over the finished trials, answers and kept ticks: equal for runs that are the same to the bit.
+// 16 hexadecimal digits (FNV-1a) over the finished trials, answers and kept ticks:
+// equal for runs that are the same to the bit.
 std::string sessionHash(const SessionReader& session);
 
 }  // namespace pincer::tasks

@@ -18,8 +18,10 @@ Left look(const SessionRun& run) {
   const SessionReader there(run.path);
   const SessionInfo& a = there.info();
   const SessionInfo& b = run.info;
-  if (a.task != b.task || a.protocol_json != b.protocol_json || a.participants_json != b.participants_json || a.seed != b.seed) {
-    throw InputError(run.path + ": is of another design, seed or of other participants than would be run now. Give another --out.");
+  if (a.task != b.task || a.protocol_json != b.protocol_json || a.participants_json != b.participants_json ||
+      a.seed != b.seed) {
+    throw InputError(
+        run.path + ": is of another design, seed or of other participants than would be run now. Give another --out.");
   }
   return there.complete() ? Left::kWhole : Left::kBegun;
 }

@@ -10,8 +10,10 @@ namespace pincer::tasks {
 
 bool isOneFingerTask(const std::string& task);
 
-// The experiment that a session holds. `name` stands for the session in errors; `stride`: every stride-th tick is recorded. Throws InputError.
-std::unique_ptr<Experiment> experimentOf(const SessionInfo& info, const std::string& name, const ServoOptions& servo, int stride);
+// The experiment that a session holds. `name` stands for the session in errors; `stride`: every
+// stride-th tick is recorded. Throws InputError.
+std::unique_ptr<Experiment> experimentOf(const SessionInfo& info, const std::string& name, const ServoOptions& servo,
+                                         int stride);
 
 // Which participant a session of a person has, from 0, as `participants_json` says; absent: it is of simulated ones.
 std::string personJson(std::int64_t person);

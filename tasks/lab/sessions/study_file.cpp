@@ -49,9 +49,15 @@ std::string peopleJson(const Limits& limits) {
 void readStudy(const std::string& path, ArcStudy& study) { readStudyText(readJson(path, kStudyFile), study); }
 void readStudy(const std::string& path, LocalisationStudy& study) { readStudyText(readJson(path, kStudyFile), study); }
 void readStudy(const std::string& path, ShapeStudy& study) { readStudyText(readJson(path, kStudyFile), study); }
-void parseStudy(const std::string& text, const std::string& name, ShapeStudy& study) { readStudyText(parseJson(text, name), study); }
-void parseStudy(const std::string& text, const std::string& name, LocalisationStudy& study) { readStudyText(parseJson(text, name), study); }
-void parseStudy(const std::string& text, const std::string& name, ArcStudy& study) { readStudyText(parseJson(text, name), study); }
+void parseStudy(const std::string& text, const std::string& name, ShapeStudy& study) {
+  readStudyText(parseJson(text, name), study);
+}
+void parseStudy(const std::string& text, const std::string& name, LocalisationStudy& study) {
+  readStudyText(parseJson(text, name), study);
+}
+void parseStudy(const std::string& text, const std::string& name, ArcStudy& study) {
+  readStudyText(parseJson(text, name), study);
+}
 std::string studyJson(const ArcStudy& study) { return studyText(study); }
 std::string studyJson(const LocalisationStudy& study) { return studyText(study); }
 std::string studyJson(const ShapeStudy& study) { return studyText(study); }

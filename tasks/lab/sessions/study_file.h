@@ -1,5 +1,6 @@
-// study_file: the protocol of an experiment as JSON: what `pincer run TASK --print-study` prints and `--study FILE` reads. Every key may be
-// left out; then the published design holds. SI units and radians. Mistakes get line, value and remedy (tasks/run/files/strict_json.h).
+// study_file: the protocol of an experiment as JSON: what `pincer run TASK --print-study` prints and `--study FILE`
+// reads. Every key may be left out; then the published design holds. SI units and radians. Mistakes get line, value
+// and remedy (tasks/run/files/strict_json.h).
 #pragma once
 #include <string>
 
@@ -9,8 +10,8 @@
 
 namespace pincer::tasks {
 
-// Changes what the file at `path` names. A list of conditions replaces the whole list; one with the name of a published condition begins as
-// that. Throws InputError.
+// Changes what the file at `path` names. A list of conditions replaces the whole list; one with the name of a published
+// condition begins as that. Throws InputError.
 void readStudy(const std::string& path, ArcStudy& study);
 void readStudy(const std::string& path, LocalisationStudy& study);
 void readStudy(const std::string& path, ShapeStudy& study);

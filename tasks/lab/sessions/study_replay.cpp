@@ -31,7 +31,8 @@ class StudyComparison final : public StudySink {
   }
   bool wantsInputs() const override { return stored_.hands.has_value(); }
   void input(const InputRecord& input) override {
-    if (next_input_ >= stored_.inputs.size()) return report("the trial had ended before this tick", input.tick, input.time);
+    if (next_input_ >= stored_.inputs.size())
+      return report("the trial had ended before this tick", input.tick, input.time);
     const InputRecord& stored = stored_.inputs[next_input_++];
     ++result_.inputs;
     if (wordsOf(stored) != wordsOf(input)) report(differenceOf(stored, input), stored.tick, stored.time);
@@ -53,9 +54,11 @@ class StudyComparison final : public StudySink {
   // After the last tick.
   void end() {
     const char* what = "the trial ended before this tick";
-    if (next_input_ < stored_.inputs.size()) report(what, stored_.inputs[next_input_].tick, stored_.inputs[next_input_].time);
+    if (next_input_ < stored_.inputs.size())
+      report(what, stored_.inputs[next_input_].tick, stored_.inputs[next_input_].time);
     if (stored_.has_all_inputs && next_ < samples_.size()) report(what, samples_[next_].tick, samples_[next_].time);
-    if (stored_.response && next_event_ < events_.size()) report(fmt::format("event {} didn't come again", next_event_), -1, 0);
+    if (stored_.response && next_event_ < events_.size())
+      report(fmt::format("event {} didn't come again", next_event_), -1, 0);
   }
 
  private:
@@ -69,11 +72,15 @@ class StudyComparison final : public StudySink {
   std::size_t next_ = 0, next_input_ = 0, next_event_ = 0;
 };
 
-// The session's study, whose trials are compared as they are done again. Those that nobody wants are answered as they were.
+// The session's study, whose trials are compared as they are done again. Those
+// that nobody wants are answered as they were.
 class ReplayedStudy final : public Experiment {
  public:
   ReplayedStudy(const StudyReplay& replay, ReplayResult& result)
-      : Experiment({}), replay_(replay), result_(result), study_(experimentOf(replay.session.info(), replay.session.path(), {}, 1)) {
+      : Experiment({}),
+        replay_(replay),
+        result_(result),
+        study_(experimentOf(replay.session.info(), replay.session.path(), {}, 1)) {
     for (const ResponseRecord& response : replay.session.responses()) responses_.push_back(response);
     FingerHost host;
     host.person = personOf(replay.session.info());
@@ -99,9 +106,9 @@ class ReplayedStudy final : public Experiment {
     if (!response) return std::nullopt;
     comparison.end();
     if (!stored.has_all_inputs) {
-      result_.notes.push_back(
-          fmt::format("Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.", trial.trial + 1,
-                      stored.inputs.size()));
+      result_.notes.push_back(fmt::format(
+          "Trial {}: {} inputs of its first ticks are kept, then some were lost; it is compared up to there.",
+          trial.trial + 1, stored.inputs.size()));
       return stored.response;
     }
     if (stored.response) return response;
@@ -115,14 +122,16 @@ class ReplayedStudy final : public Experiment {
     if (replay_.trial && response.trial != *replay_.trial) return;
     ++result_.trials;
     const std::string difference = differenceOf(stored, response);
-    if (!difference.empty() && !result_.first) result_.first = ReplayDifference{response.trial, -1, response.duration, difference};
+    if (!difference.empty() && !result_.first)
+      result_.first = ReplayDifference{response.trial, -1, response.duration, difference};
   }
 
  private:
   StoredStudyTrial storedTrial(std::int64_t trial) {
     StoredStudyTrial stored;
     stored.trial = trial;
-    if (static_cast<std::size_t>(trial) < responses_.size()) stored.response = responses_[static_cast<std::size_t>(trial)];
+    if (static_cast<std::size_t>(trial) < responses_.size())
+      stored.response = responses_[static_cast<std::size_t>(trial)];
     if (replay_.simulated) return stored;
     const auto hands = replay_.session.hands();
     const auto own = std::find_if(hands.begin(), hands.end(), [&](const HandsRecord& h) { return h.trial == trial; });
@@ -135,7 +144,9 @@ class ReplayedStudy final : public Experiment {
   FingerHost hostOf(const StoredStudyTrial& stored) const {
     FingerHost host;
     if (stored.hands && !stored.inputs.empty())
-      host.finger = [&stored](const FingerPlace&) { return std::make_unique<RecordedFinger>(*stored.hands, stored.inputs); };
+      host.finger = [&stored](const FingerPlace&) {
+        return std::make_unique<RecordedFinger>(*stored.hands, stored.inputs);
+      };
     if (replay_.run) host.serve = [this](FingerTrial& trial, const TrialPlace&) { return replay_.run(trial); };
     return host;
   }
@@ -176,7 +187,8 @@ std::vector<InputRecord> wholeInputs(const SessionReader& session, std::int64_t 
 void replayStudy(const StudyReplay& replay, ReplayResult& result) {
   ReplayedStudy study(replay, result);
   const bool has_cut_short = !replay.simulated && replay.session.hands().size() > study.answers();
-  const bool known = !replay.trial || *replay.trial < static_cast<std::int64_t>(study.answers() + (has_cut_short ? 1 : 0));
+  const bool known =
+      !replay.trial || *replay.trial < static_cast<std::int64_t>(study.answers() + (has_cut_short ? 1 : 0));
   if ((study.answers() == 0 && !has_cut_short) || !known) {
     throw InputError(fmt::format("{}: holds no finished trial{}. `pincer report` lists them.", replay.session.path(),
                                  replay.trial ? fmt::format(" {}", *replay.trial + 1) : ""));

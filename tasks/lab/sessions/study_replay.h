@@ -1,5 +1,5 @@
-// study_replay: a session of an experiment with one finger again, trial by trial through the same study: simulated participants do theirs again,
-// a person's finger and keys are given as they were recorded.
+// study_replay: a session of an experiment with one finger again, trial by trial through the same study: simulated
+// participants do theirs again, a person's finger and keys are given as they were recorded.
 #pragma once
 #include "pincer/tasks/lab/sessions/replay.h"
 

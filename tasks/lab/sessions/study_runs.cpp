@@ -67,12 +67,15 @@ SessionRun runOfExperiment(const std::string& task, Study study, const StudyRuns
 struct PublishedStudy {
   std::string task;
   std::function<bool(Control)> has;
-  std::function<SessionRun(const StudyRuns& runs, int experiment, Control control, const std::atomic<bool>& interrupted)> experiment;
+  std::function<SessionRun(const StudyRuns& runs, int experiment, Control control,
+                           const std::atomic<bool>& interrupted)>
+      experiment;
 };
 
 template <class Experiment, class Study>
 PublishedStudy publishedStudy(const std::string& task, const Study& study) {
-  return {task, has<Study>, [=](const StudyRuns& runs, int experiment, Control control, const std::atomic<bool>& interrupted) {
+  return {task, has<Study>,
+          [=](const StudyRuns& runs, int experiment, Control control, const std::atomic<bool>& interrupted) {
             return runOfExperiment<Experiment>(task, study, runs, experiment, control, interrupted);
           }};
 }
@@ -101,8 +104,8 @@ void addRuns(const std::vector<PublishedStudy>& studies, const StudyRuns& runs, 
   }
 }
 
-std::map<std::string, std::vector<std::string>> filesOf(const std::vector<PublishedStudy>& studies, const StudyRuns& runs, int count,
-                                                        Control control) {
+std::map<std::string, std::vector<std::string>> filesOf(const std::vector<PublishedStudy>& studies,
+                                                        const StudyRuns& runs, int count, Control control) {
   std::map<std::string, std::vector<std::string>> found;
   for (const PublishedStudy& study : studies) {
     for (int e = 0; e < count; ++e) {
@@ -125,7 +128,8 @@ StudySessions runPublishedStudies(const StudyRuns& runs, const std::atomic<bool>
   addRuns(studies, runs, runs.controls, Control::kParked, interrupted, sessions);
   addRuns(studies, runs, runs.controls, Control::kUnrelated, interrupted, sessions);
   runSessions(sessions, runs.threads, interrupted, progress);
-  return {filesOf(studies, runs, runs.experiments, Control::kNone), filesOf(studies, runs, runs.controls, Control::kParked),
+  return {filesOf(studies, runs, runs.experiments, Control::kNone),
+          filesOf(studies, runs, runs.controls, Control::kParked),
           filesOf(studies, runs, runs.controls, Control::kUnrelated)};
 }
 

@@ -1,5 +1,5 @@
-// study_runs: many experiments of each published study with one finger, each a session in a file of its own, for who judges them together
-// (tasks/lab/findings/claim_judge.h).
+// study_runs: many experiments of each published study with one finger, each a session in a file of its own, for who
+// judges them together (tasks/lab/findings/claim_judge.h).
 #pragma once
 #include <atomic>
 #include <functional>
@@ -20,8 +20,9 @@ struct StudyRuns {
   std::string directory;    // of the sessions: TASK-K.db, TASK-frozen-K.db, TASK-unrelated-K.db
 };
 
-// Sessions that are there and complete stay as they are, unfinished ones are gone on with. `progress` in thousandths, from any thread, one at a
-// time. Returns whatever is there in the end, of other parts too. Throws InputError for a session of another design or other participants.
+// Sessions that are there and complete stay as they are, unfinished ones are gone on with. `progress` in thousandths,
+// from any thread, one at a time. Returns whatever is there in the end, of other parts too. Throws InputError for a
+// session of another design or other participants.
 StudySessions runPublishedStudies(const StudyRuns& runs, const std::atomic<bool>& interrupted,
                                   const std::function<void(std::int64_t done, std::int64_t total)>& progress);
 

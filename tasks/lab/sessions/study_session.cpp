@@ -15,8 +15,10 @@ class StudyFileSink final : public StudySink {
   StudyFileSink(SessionWriter& writer, bool inputs) : writer_(writer), inputs_(inputs) {}
   bool wantsInputs() const override { return inputs_; }
   void hands(const HandsRecord& hands) override { writer_.addHands(hands); }
-  void input(const InputRecord& input) override { writer_.pushInput(input); }  // a lost one is a gap in the ticks, which a replay names
-  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }  // a lost one is counted by the store
+  // a lost one is a gap in the ticks, which a replay names
+  void input(const InputRecord& input) override { writer_.pushInput(input); }
+  // a lost one is counted by the store
+  void sample(const SampleRecord& sample) override { writer_.pushSample(sample); }
   void event(const EventRecord& event) override { writer_.addEvent(event); }
   void response(const ResponseRecord& response) override { writer_.finishResponse(response); }
 
@@ -26,11 +28,13 @@ class StudyFileSink final : public StudySink {
 };
 
 // Asks people what the study has for this moment. False: the person has left.
-bool askSurvey(const Experiment& experiment, const StudySession& session, const std::string& moment, SessionWriter& writer) {
+bool askSurvey(const Experiment& experiment, const StudySession& session, const std::string& moment,
+               SessionWriter& writer) {
   if (!session.host.ask) return true;
   const SurveyPlan& plan = experiment.plan();
-  const SurveyForm form{questionsOf(moment == "before" ? plan.demographics : plan.survey, {session.info.task}, experiment.conditions()),
-                        moment, session.host.person.value_or(0)};
+  const SurveyForm form{
+      questionsOf(moment == "before" ? plan.demographics : plan.survey, {session.info.task}, experiment.conditions()),
+      moment, session.host.person.value_or(0)};
   return fillForm(form, SessionReader(session.path).survey(), session.host.ask,
                   [&](const SurveyRecord& answer) { writer.addSurvey(answer); });
 }
@@ -38,7 +42,8 @@ bool askSurvey(const Experiment& experiment, const StudySession& session, const 
 }  // namespace
 
 SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const std::string& protocol_json,
-                             const std::string& participants_json, const ServoOptions& servo, int sample_rate, const std::string& devices) {
+                             const std::string& participants_json, const ServoOptions& servo, int sample_rate,
+                             const std::string& devices) {
   SessionInfo info;
   info.task = task;
   info.seed = seed;
@@ -48,10 +53,18 @@ SessionInfo studySessionInfo(const std::string& task, std::uint64_t seed, const 
   info.participants_hash = fingerprint(participants_json);
   JsonWriter json;
   const bool simulated = devices == "simulated" || devices == "mouse";
-  json.beginObject().key("arms").value(devices).key("tactile_display").value(simulated ? "simulated 1-DOF" : devices.c_str());
+  json.beginObject()
+      .key("arms")
+      .value(devices)
+      .key("tactile_display")
+      .value(simulated ? "simulated 1-DOF" : devices.c_str());
   json.key("rate").value(servo.rate);
-  info.devices_json =
-      json.key("sample_rate").value(sample_rate).key("real_time").value(servo.clock != ServoClock::kVirtual).endObject().text();
+  info.devices_json = json.key("sample_rate")
+                          .value(sample_rate)
+                          .key("real_time")
+                          .value(servo.clock != ServoClock::kVirtual)
+                          .endObject()
+                          .text();
   return info;
 }
 
@@ -59,9 +72,10 @@ StudyOutcome runStudySession(Experiment& experiment, const StudySession& session
                              const std::function<void(const StudyProgress&)>& progress) {
   SessionOptions store;
   store.block_when_full = session.waits;
-  SessionWriter writer =
-      session.resume ? SessionWriter::resume(session.path, store) : SessionWriter::create(session.path, session.info, store);
-  const std::vector<ResponseRecord> earlier = session.resume ? SessionReader(session.path).responses() : std::vector<ResponseRecord>();
+  SessionWriter writer = session.resume ? SessionWriter::resume(session.path, store)
+                                        : SessionWriter::create(session.path, session.info, store);
+  const std::vector<ResponseRecord> earlier =
+      session.resume ? SessionReader(session.path).responses() : std::vector<ResponseRecord>();
   experiment.serveWith(session.host);
   StudyFileSink sink(writer, session.host.isPersons());
   try {

@@ -7,7 +7,8 @@ namespace pincer::tasks {
 
 class TrialCapture {
  public:
-  // The `trial`-th, from 0, of `trials`; the cycle must outlive it. `blind`: nothing of the world is seen. `guided`: with hints and goals.
+  // The `trial`-th, from 0, of `trials`; the cycle must outlive it. `blind`: nothing of the world
+  // is seen. `guided`: with hints and goals.
   TrialCapture(HandsCycle& cycle, std::size_t trial, std::size_t trials, bool blind = false, bool guided = false);
 
   // After each tick: what the person hears changes what the person is told.

@@ -19,22 +19,25 @@ struct VariantRuns {
   std::vector<std::string> paths;
 };
 
-SessionRun runOf(const FindingsOptions& options, const FindingsVariant& variant, int experiment, const std::string& path,
-                 const std::atomic<bool>& interrupted, std::atomic<std::uint64_t>& ticks) {
+SessionRun runOf(const FindingsOptions& options, const FindingsVariant& variant, int experiment,
+                 const std::string& path, const std::atomic<bool>& interrupted, std::atomic<std::uint64_t>& ticks) {
   ManipulationSessionOptions session;
   session.study = experimentOf(options, variant, experiment);
   session.sample_rate = 0;
   session.claims = claimsHash();
   return {path, manipulationSessionInfo(session), [=, &interrupted, &ticks](bool resume, const ShareDone& share) {
-            const auto progress = [&](const TrialProgress& p) { share(static_cast<double>(p.done) / static_cast<double>(p.total)); };
+            const auto progress = [&](const TrialProgress& p) {
+              share(static_cast<double>(p.done) / static_cast<double>(p.total));
+            };
             const auto run = resume ? resumeManipulationSession : runManipulationSession;
             ticks += run(session, path, interrupted, progress).servo.ticks;
           }};
 }
 
 // One experiment of each variant after the other, but all of the primary analysis first.
-std::vector<SessionRun> runsOf(const FindingsOptions& options, std::vector<VariantRuns>& variants, const std::string& directory,
-                               const std::atomic<bool>& interrupted, std::atomic<std::uint64_t>& ticks) {
+std::vector<SessionRun> runsOf(const FindingsOptions& options, std::vector<VariantRuns>& variants,
+                               const std::string& directory, const std::atomic<bool>& interrupted,
+                               std::atomic<std::uint64_t>& ticks) {
   std::vector<SessionRun> runs;
   const auto add = [&](VariantRuns& v, int experiment) {
     v.paths.push_back(fmt::format("{}/{}-{}.db", directory, v.variant->name, experiment));
@@ -54,7 +57,8 @@ std::vector<SessionRun> runsOf(const FindingsOptions& options, std::vector<Varia
 
 }  // namespace
 
-FindingsResult runVariants(const FindingsOptions& options, const std::string& directory, const std::atomic<bool>& interrupted,
+FindingsResult runVariants(const FindingsOptions& options, const std::string& directory,
+                           const std::atomic<bool>& interrupted,
                            const std::function<void(std::int64_t, std::int64_t)>& progress) {
   validate(options);
   std::vector<VariantRuns> variants;

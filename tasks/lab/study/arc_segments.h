@@ -3,8 +3,8 @@
 //   n = 1 + 0.9 rad / turn
 //
 //   n  segments on the published arc, needn't be whole [-];  turn  between neighbouring segments [rad]
-// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2: about 90 mm of travel on a radius of 100 mm; this reading gives the
-// printed angles of the mean thresholds (257.3 segments: 0.20 degrees; 16.3: 3.37).
+// Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2: about 90 mm of travel on a radius of
+// 100 mm; this reading gives the printed angles of the mean thresholds (257.3 segments: 0.20 degrees; 16.3: 3.37).
 #pragma once
 
 namespace pincer::tasks {

@@ -9,7 +9,8 @@ namespace pincer::tasks {
 std::vector<Order> carryOverSquare(int n) {
   PINCER_ASSERT(n >= 1);
   Order first(static_cast<std::size_t>(n));
-  for (int place = 0; place < n; ++place) first[static_cast<std::size_t>(place)] = place % 2 ? (place + 1) / 2 : (n - place / 2) % n;
+  for (int place = 0; place < n; ++place)
+    first[static_cast<std::size_t>(place)] = place % 2 ? (place + 1) / 2 : (n - place / 2) % n;
   std::vector<Order> rows;
   for (int k = 0; k < n; ++k) {
     rows.push_back(first);
@@ -28,7 +29,8 @@ std::vector<Order> reducedLatinSquare(int n) {
   PINCER_ASSERT(n >= 1);
   std::vector<Order> rows(static_cast<std::size_t>(n), Order(static_cast<std::size_t>(n)));
   for (int k = 0; k < n; ++k) {
-    for (int place = 0; place < n; ++place) rows[static_cast<std::size_t>(k)][static_cast<std::size_t>(place)] = (k + place) % n;
+    for (int place = 0; place < n; ++place)
+      rows[static_cast<std::size_t>(k)][static_cast<std::size_t>(place)] = (k + place) % n;
   }
   return rows;
 }

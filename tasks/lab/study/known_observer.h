@@ -1,5 +1,5 @@
-// known_observer: an observer whose psychometric function is known, to judge staircases and fits by. It has no body and feels no device:
-// who does is in tasks/lab/participants.
+// known_observer: an observer whose psychometric function is known, to judge staircases and fits by. It has no body and
+// feels no device: who does is in tasks/lab/participants.
 #pragma once
 #include <vector>
 
@@ -17,8 +17,8 @@ inline Staircase runStaircase(const StaircaseRule& rule, const PsychometricFunct
 }
 
 // `trials` answers at each of the levels.
-inline std::vector<LevelCount> runConstantStimuli(const std::vector<double>& levels, int trials, const PsychometricFunction& observer,
-                                                  Random& random) {
+inline std::vector<LevelCount> runConstantStimuli(const std::vector<double>& levels, int trials,
+                                                  const PsychometricFunction& observer, Random& random) {
   std::vector<LevelCount> counts;
   for (const double level : levels) {
     counts.push_back({level, 0, trials});

@@ -1,5 +1,6 @@
-// parameter: what there is to say of one number of a study beside its value: what it means, where it may lie, and what helps whoever is outside.
-// Lists of them (tasks/lab/experiments/study_parameters.h) are what the reader, the writer, the check and the reference of study files follow.
+// parameter: what there is to say of one number of a study beside its value: what it means, where it may lie, and what
+// helps whoever is outside. Lists of them (tasks/lab/experiments/study_parameters.h) are what the reader, the writer,
+// the check and the reference of study files follow.
 #pragma once
 #include <fmt/format.h>
 
@@ -21,8 +22,8 @@ struct Parameter {
   bool may_be_null = false;                      // of a number: NaN stands for "there is none"
 };
 
-// A demand of two parameters on each other, or one that was never in a file: `path` is as in messages of files (conditions[1].staircase), so
-// that the reader can say where in the file it stands.
+// A demand of two parameters on each other, or one that was never in a file: `path` is as in messages of files
+// (conditions[1].staircase), so that the reader can say where in the file it stands.
 class ParameterError : public InputError {
  public:
   ParameterError(std::string path, const std::string& message) : InputError(message), path_(std::move(path)) {}
@@ -35,7 +36,8 @@ class ParameterError : public InputError {
 template <class Field>
 concept NumberField = std::same_as<Field, double> || std::same_as<Field, int>;
 
-// A visitor of lists that refuses the first number out of its range. Throws ParameterError: "<of>: <key> = <value> is out of range ...".
+// A visitor of lists that refuses the first number out of its range. Throws ParameterError:
+// "<of>: <key> = <value> is out of range ...".
 class RangeCheck {
  public:
   // `path`: of the object in the file, "" for the whole file.

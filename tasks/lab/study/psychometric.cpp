@@ -14,8 +14,12 @@ namespace {
 constexpr double kLapses[] = {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06};
 constexpr int kSections = 30;  // of golden sections: 0.618^30 = 5e-7 of the range
 
-double sigmoidAt(Sigmoid shape, double z) { return shape == Sigmoid::kLogistic ? 1 / (1 + math::exp(-z)) : normalCdf(z); }
-double sigmoidQuantile(Sigmoid shape, double p) { return shape == Sigmoid::kLogistic ? math::log(p / (1 - p)) : normalQuantile(p); }
+double sigmoidAt(Sigmoid shape, double z) {
+  return shape == Sigmoid::kLogistic ? 1 / (1 + math::exp(-z)) : normalCdf(z);
+}
+double sigmoidQuantile(Sigmoid shape, double p) {
+  return shape == Sigmoid::kLogistic ? math::log(p / (1 - p)) : normalQuantile(p);
+}
 
 struct Peak {
   double at = 0, value = 0;
@@ -44,7 +48,8 @@ class ThresholdLikelihood {
  public:
   ThresholdLikelihood(std::span<const LevelCount> counts, Sigmoid shape, double gamma, double p)
       : counts_(counts), shape_(shape), gamma_(gamma), p_(p) {
-    const auto [least, most] = std::minmax_element(counts.begin(), counts.end(), [](auto& a, auto& b) { return a.level < b.level; });
+    const auto [least, most] =
+        std::minmax_element(counts.begin(), counts.end(), [](auto& a, auto& b) { return a.level < b.level; });
     low_ = least->level, range_ = most->level - least->level;
     PINCER_ASSERT(range_ > 0);  // two levels at least
   }
@@ -59,9 +64,11 @@ class ThresholdLikelihood {
     fit.log_likelihood = -std::numeric_limits<double>::infinity();
     for (const double lambda : kLapses) {
       const double z = sigmoidQuantile(shape_, (p_ - gamma_) / (1 - gamma_ - lambda));
-      const Peak peak = goldenSection(math::log(1e-3 * range_), math::log(10 * range_),
-                                      [&](double ln_beta) { return logLikelihood(function(threshold, z, math::exp(ln_beta), lambda)); });
-      if (peak.value > fit.log_likelihood) fit = {function(threshold, z, math::exp(peak.at), lambda), threshold, {}, peak.value};
+      const Peak peak = goldenSection(math::log(1e-3 * range_), math::log(10 * range_), [&](double ln_beta) {
+        return logLikelihood(function(threshold, z, math::exp(ln_beta), lambda));
+      });
+      if (peak.value > fit.log_likelihood)
+        fit = {function(threshold, z, math::exp(peak.at), lambda), threshold, {}, peak.value};
     }
     return fit;
   }
@@ -114,17 +121,22 @@ double PsychometricFunction::at(double x) const {
   return gamma + (1 - gamma - lambda) * sigmoidAt(shape, (x - alpha) / beta);
 }
 
-double PsychometricFunction::levelOf(double p) const { return alpha + beta * sigmoidQuantile(shape, (p - gamma) / (1 - gamma - lambda)); }
+double PsychometricFunction::levelOf(double p) const {
+  return alpha + beta * sigmoidQuantile(shape, (p - gamma) / (1 - gamma - lambda));
+}
 
-PsychometricFit fitPsychometric(std::span<const LevelCount> counts, Sigmoid shape, double gamma, double p, double confidence) {
+PsychometricFit fitPsychometric(std::span<const LevelCount> counts, Sigmoid shape, double gamma, double p,
+                                double confidence) {
   PINCER_ASSERT(!counts.empty());
   PINCER_ASSERT(gamma < p && p < 0.94);  // with the most lapses
   PINCER_ASSERT(0 < confidence && confidence < 1);
   const ThresholdLikelihood profile(counts, shape, gamma, p);
-  const Peak peak = goldenSection(profile.low(), profile.high(), [&](double threshold) { return profile.at(threshold); });
+  const Peak peak =
+      goldenSection(profile.low(), profile.high(), [&](double threshold) { return profile.at(threshold); });
   PsychometricFit fit = profile.best(peak.at);
   const double z = normalQuantile(0.5 + 0.5 * confidence);
-  const double limit = fit.log_likelihood - 0.5 * z * z;  // a chi-squared variable with 1 degree of freedom is a squared normal one
+  // a chi-squared variable with 1 degree of freedom is a squared normal one
+  const double limit = fit.log_likelihood - 0.5 * z * z;
   fit.interval = {crossing(profile, peak.at, profile.low(), limit), crossing(profile, peak.at, profile.high(), limit)};
   return fit;
 }

@@ -30,7 +30,9 @@ std::string problemWith(const StaircaseRule& r) {
 
 double convergencePoint(int down) { return math::pow(0.5, 1.0 / down); }
 
-bool Staircase::over() const { return static_cast<int>(reversals_.size()) >= rule_.reversals || trials_ >= rule_.most_trials; }
+bool Staircase::over() const {
+  return static_cast<int>(reversals_.size()) >= rule_.reversals || trials_ >= rule_.most_trials;
+}
 
 bool Staircase::answer(bool correct) {
   ++trials_;

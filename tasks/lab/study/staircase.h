@@ -1,14 +1,16 @@
-// staircase: levels that follow the answers. After `down` right answers in a row (since the last change) the level goes down by a step, after
-// `up` wrong ones in a row up by one. Where the direction changes, the level is a reversal.
+// staircase: levels that follow the answers. After `down` right answers in a row (since the last change) the level goes
+// down by a step, after `up` wrong ones in a row up by one. Where the direction changes, the level is a reversal.
 //
-//   threshold = mean of the last `averaged` reversal levels;   1-up n-down settles where  p^n = 1/2:  n = 2 at 70.7 %, n = 3 at 79.4 %
+//   threshold = mean of the last `averaged` reversal levels;   1-up n-down settles where  p^n = 1/2:
+//                                                              n = 2 at 70.7 %, n = 3 at 79.4 %
 //
 //   p  probability of a right answer at the level [-]
 // Source: H. Levitt, "Transformed up-down methods in psychoacoustics", J. Acoust. Soc. Am. 49(2B), 1971, 467-477.
-// That point is reached for steps that are small beside the spread of the psychometric function. With equal steps up and down the mean of
-// reversals misses it by more, the larger they are (M. A. Garcia-Perez, "Forced-choice staircases with fixed step sizes", Vision Res. 38(12),
-// 1998, 1861-1881), and a few reversals still remember the start. `pincer bench study` measures both.
-// Departures: levels are kept within [lowest, highest]; a staircase ends after `most_trials` in any case, and then may have no threshold.
+// That point is reached for steps that are small beside the spread of the psychometric function. With equal steps up
+// and down the mean of reversals misses it by more, the larger they are (M. A. Garcia-Perez, "Forced-choice staircases
+// with fixed step sizes", Vision Res. 38(12), 1998, 1861-1881), and a few reversals still remember the start. `pincer
+// bench study` measures both. Departures: levels are kept within [lowest, highest]; a staircase ends after
+// `most_trials` in any case, and then may have no threshold.
 #pragma once
 #include <limits>
 #include <string>

@@ -1,8 +1,8 @@
-// survey: what people are asked beside the trials: about themselves before the first, and afterwards how they thought they did. Items are data: a study
-// file names its own. Simulated people leave it empty.
+// survey: what people are asked beside the trials: about themselves before the first, and afterwards how they thought
+// they did. Items are data: a study file names its own. Simulated people leave it empty.
 //
-// The published study asked people after both manipulation tasks how they thought they did and what the display did (A. J. Doxon, dissertation,
-// University of Utah, 2014, ch. 4); its items are lost, and manipulationSurvey() is ours.
+// The published study asked people after both manipulation tasks how they thought they did and what the display did (A.
+// J. Doxon, dissertation, University of Utah, 2014, ch. 4); its items are lost, and manipulationSurvey() is ours.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -28,8 +28,8 @@ struct SurveyItem {
   bool operator==(const SurveyItem&) const = default;
 };
 
-// In which order a participant does the conditions: balanced over the participants (a Latin square; of two, every other participant begins with the
-// second), as the file lists them, or shuffled by the seed.
+// In which order a participant does the conditions: balanced over the participants (a Latin square; of two, every other
+// participant begins with the second), as the file lists them, or shuffled by the seed.
 enum class ConditionOrder : std::uint8_t { kBalanced, kListed, kShuffled };
 
 struct SurveyPlan {
@@ -50,7 +50,8 @@ SurveyPlan oneFingerSurvey();
 // Throws ParameterError: two items of one name, a choice of fewer than two, low not below high.
 void validate(const SurveyPlan& plan, std::string_view of);
 
-// Of a study whose trials the file doesn't repeat by blocks, and, without conditions to order, neither orders. Throws ParameterError.
+// Of a study whose trials the file doesn't repeat by blocks, and, without conditions to
+// order, neither orders. Throws ParameterError.
 void requireOneBlock(const SurveyPlan& plan, std::string_view of, bool orders_conditions);
 
 // An item that is to be asked, of one condition or task if it is asked for each.

@@ -63,7 +63,8 @@ class OneFingerSweep {
   std::vector<ResponseRecord> asked() const {
     std::vector<ResponseRecord> responses(1);
     for (const StudyRun& run : Experiment(published_, {}, kKeepsNothing).runs()) {
-      responses.back().condition = run.condition.empty() && !run.list.empty() ? run.list.front().condition : run.condition;
+      responses.back().condition =
+          run.condition.empty() && !run.list.empty() ? run.list.front().condition : run.condition;
     }
     return responses;
   }
@@ -83,7 +84,8 @@ class OneFingerSweep {
     const StudySummary summary = summaryOf(study, sink.responses);
     std::vector<double> headlines;
     for (const StudyCondition& c : summary.conditions) {
-      headlines.push_back(isUnsettled(c) ? std::numeric_limits<double>::quiet_NaN() : summary.headline.scale * c.headline.mean);
+      headlines.push_back(isUnsettled(c) ? std::numeric_limits<double>::quiet_NaN()
+                                         : summary.headline.scale * c.headline.mean);
     }
     return headlines;
   }

@@ -47,7 +47,8 @@ std::vector<SweptMeasure> measuresOf(const SceneSweep& sweep, const Scene& scene
     for (const Quantity& quantity : scene.record.quantities) measures.push_back({quantity});
   }
   if (measures.empty() && scene.expectations.empty()) {
-    throw InputError(fmt::format("{}: the scene records and expects nothing. Say what you want to know: --measure sphere.p_z", scene.file));
+    throw InputError(fmt::format(
+        "{}: the scene records and expects nothing. Say what you want to know: --measure sphere.p_z", scene.file));
   }
   return measures;
 }
@@ -59,7 +60,8 @@ std::string labelOf(const SweptMeasure& measure) {
 
 Scene sceneAt(const NamedJson& scene, const SweepGrid& grid, std::size_t point) {
   JsonValue json = scene.json;
-  for (std::size_t i = 0; i < grid.paths.size(); ++i) setNumber(json, scenePath(json, grid.paths[i]), grid.points[point][i]);
+  for (std::size_t i = 0; i < grid.paths.size(); ++i)
+    setNumber(json, scenePath(json, grid.paths[i]), grid.points[point][i]);
   return sceneOf(json, scene.name);
 }
 
@@ -81,7 +83,8 @@ CaseResult measured(Scene scene, const SceneSweep& sweep, const std::atomic<bool
     observe();
   }
   if (!log.expectations().empty()) {
-    const auto failed = std::count_if(log.outcomes().begin(), log.outcomes().end(), [](const Outcome& o) { return !o.holds(); });
+    const auto failed =
+        std::count_if(log.outcomes().begin(), log.outcomes().end(), [](const Outcome& o) { return !o.holds(); });
     values.push_back(static_cast<double>(failed));
   }
   return {true, std::move(values), hashText(simulation.state().world), ""};
@@ -100,7 +103,8 @@ Scene firstReadable(const NamedJson& scene, const SceneSweep& sweep) {
   std::rethrow_exception(first);
 }
 
-std::string definitionOf(const SweepTable& table, const NamedJson& scene, std::string_view text, const SceneSweep& sweep) {
+std::string definitionOf(const SweepTable& table, const NamedJson& scene, std::string_view text,
+                         const SceneSweep& sweep) {
   JsonWriter json;
   json.beginObject().key("scene").value(scene.name).key("text").value(fingerprint(text)).key("measures").beginArray();
   for (const std::string& measure : sweep.measures) json.value(measure);

@@ -31,7 +31,8 @@ bool isMeasured(const std::string& task, const FindingMeasure& measure) {
   return task == "manipulation" || measure.of_pickup == (task == "sphere-pickup");
 }
 
-std::vector<double> meansOf(const std::string& task, const ManipulationStudy& study, const std::atomic<bool>& interrupted) {
+std::vector<double> meansOf(const std::string& task, const ManipulationStudy& study,
+                            const std::atomic<bool>& interrupted) {
   RowSink sink;
   runManipulationStudy(study, {}, sink, interrupted);
   std::vector<double> means;
@@ -48,7 +49,9 @@ std::vector<double> meansOf(const std::string& task, const ManipulationStudy& st
 
 }  // namespace
 
-bool isSweptStudy(const std::string& task) { return task == "sphere-pickup" || task == "cylinder-alignment" || task == "manipulation"; }
+bool isSweptStudy(const std::string& task) {
+  return task == "sphere-pickup" || task == "cylinder-alignment" || task == "manipulation";
+}
 
 SweepJob studySweep(const std::string& task, const StudySweep& sweep) {
   SweepJob job;
@@ -56,7 +59,8 @@ SweepJob studySweep(const std::string& task, const StudySweep& sweep) {
   for (const FindingMeasure& measure : findingMeasures()) {
     if (!isMeasured(task, measure)) continue;
     for (const char* condition : {"force only", "CLD + force"}) {
-      const std::string label = fmt::format("{}, {} [{}]", measure.label, condition, *measure.unit ? measure.unit : "-");
+      const std::string label =
+          fmt::format("{}, {} [{}]", measure.label, condition, *measure.unit ? measure.unit : "-");
       addMeasure(job.table, label, measure.expected != PublishedEffect::kNone);
     }
   }

@@ -1,4 +1,5 @@
-// study_sweep: a study of the manipulation tasks with simulated participants, for many values of its parameters, and what they did.
+// study_sweep: a study of the manipulation tasks with simulated participants, for many
+// values of its parameters, and what they did.
 #pragma once
 #include <string>
 #include <vector>
@@ -18,8 +19,9 @@ struct StudySweep {
 // sphere-pickup, cylinder-alignment, manipulation.
 bool isSweptStudy(const std::string& task);
 
-// Every measure (tasks/lab/report/person_means.h) twice, force only and CLD + force: means over the participants; squeezes, times and the error of
-// alignment are plotted. Without training: these participants don't learn. Throws InputError where no case can be read: for a path that isn't in a study.
+// Every measure (tasks/lab/report/person_means.h) twice, force only and CLD + force: means over the participants;
+// squeezes, times and the error of alignment are plotted. Without training: these participants don't learn. Throws
+// InputError where no case can be read: for a path that isn't in a study.
 SweepJob studySweep(const std::string& task, const StudySweep& sweep);
 
 }  // namespace pincer::tasks

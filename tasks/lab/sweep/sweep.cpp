@@ -77,11 +77,13 @@ class SweepRun {
 }  // namespace
 
 std::size_t SweepTable::done() const {
-  return static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const CaseResult& r) { return r.done; }));
+  return static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(), [](const CaseResult& r) { return r.done; }));
 }
 
 std::size_t SweepTable::failed() const {
-  return static_cast<std::size_t>(std::count_if(results.begin(), results.end(), [](const CaseResult& r) { return !r.error.empty(); }));
+  return static_cast<std::size_t>(
+      std::count_if(results.begin(), results.end(), [](const CaseResult& r) { return !r.error.empty(); }));
 }
 
 SweepShard parseShard(const std::string& text) {
@@ -92,8 +94,10 @@ SweepShard parseShard(const std::string& text) {
   const auto second = has_two ? std::from_chars(first.ptr + 1, end, shard.count) : first;
   constexpr int kMostShards = 100'000;
   const bool is_whole = has_two && second.ec == std::errc() && second.ptr == end;
-  if (is_whole && shard.count >= 1 && shard.count <= kMostShards && shard.index >= 1 && shard.index <= shard.count) return shard;
-  throw InputError(fmt::format("--shard {}: write I/N, the I-th of N shares, 1 <= I <= N <= {}; for example 2/7", text, kMostShards));
+  if (is_whole && shard.count >= 1 && shard.count <= kMostShards && shard.index >= 1 && shard.index <= shard.count)
+    return shard;
+  throw InputError(fmt::format("--shard {}: write I/N, the I-th of N shares, 1 <= I <= N <= {}; for example 2/7", text,
+                               kMostShards));
 }
 
 CaseResult measuredCase(const SweepJob& job, std::size_t point, const std::atomic<bool>& interrupted) {

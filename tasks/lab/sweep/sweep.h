@@ -1,7 +1,7 @@
 // sweep: the same scene or study many times, with some of its numbers changed, and what came of each case.
 //
-// Cases are shared among threads, or as shards among machines; each has its own place in the table, so that neither their number nor their order
-// changes a digit. A case that can't be run is a row with its error, not the end.
+// Cases are shared among threads, or as shards among machines; each has its own place in the table, so that neither
+// their number nor their order changes a digit. A case that can't be run is a row with its error, not the end.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -38,14 +38,17 @@ struct SweepJob {
   SweepTable table;  // without results
   // Everything that decides a result, but the program: two sweeps whose definitions are equal give equal tables.
   std::string definition;
-  // A case by its index; from any thread, never twice. Throws InputError: the case's error. After an interruption its values don't count.
+  // A case by its index; from any thread, never twice. Throws InputError: the case's error.
+  // After an interruption its values don't count.
   std::function<CaseResult(std::size_t, const std::atomic<bool>&)> measure;
 };
 
 // One share of a sweep: cases index - 1, index - 1 + count, ... of 1 <= index <= count.
 struct SweepShard {
   int index = 1, count = 1;
-  bool has(std::size_t point) const { return point % static_cast<std::size_t>(count) + 1 == static_cast<std::size_t>(index); }
+  bool has(std::size_t point) const {
+    return point % static_cast<std::size_t>(count) + 1 == static_cast<std::size_t>(index);
+  }
 };
 
 // "2/7". Throws InputError that says how it is written.
@@ -58,7 +61,8 @@ struct SweepOptions {
   std::function<void(std::size_t point, const CaseResult& result)> finished = {};  // likewise: a case is whole
 };
 
-// Fills in the results of the shard's cases that aren't done. Passes on what `finished` throws, and what `measure` throws but InputError.
+// Fills in the results of the shard's cases that aren't done. Passes on what `finished` throws,
+// and what `measure` throws but InputError.
 void runSweep(SweepJob& job, const SweepOptions& options, const std::atomic<bool>& interrupted);
 
 // One case, whole: with its error where it can't be run.
@@ -67,16 +71,19 @@ CaseResult measuredCase(const SweepJob& job, std::size_t point, const std::atomi
 std::string sweepText(const SweepTable& table);
 std::string sweepCsv(const SweepTable& table);
 std::string sweepJson(const SweepTable& table);
-// One panel per plotted measure over the first parameter, a line for each value of the second, a column for each of the third; a heat map
-// where two parameters have many values.
-bool isDrawable(const SweepTable& table);  // at most three parameters; of three, at most 6 values of the second and 4 of the third
+// One panel per plotted measure over the first parameter, a line for each value of the second, a column for each of the
+// third; a heat map where two parameters have many values.
+// at most three parameters; of three, at most 6 values of the second and 4 of the third
+bool isDrawable(const SweepTable& table);
 Figure sweepFigure(const SweepTable& table);
 
 enum class SweepFormat { kCsv, kJson, kHdf5 };
-// The table as sweep.csv, sweep.json or sweep.h5, and where it is drawable sweep.png and sweep.svg, in `directory`, which is made if missing.
-// Throws InputError. Returns their paths.
-std::vector<std::string> writeSweep(const SweepTable& table, const std::string& directory, SweepFormat format = SweepFormat::kCsv);
-// Groups /parameters and /measures with a dataset of doubles per column, /state_hash and /error, all as long as the cases that are done.
+// The table as sweep.csv, sweep.json or sweep.h5, and where it is drawable sweep.png and sweep.svg, in `directory`,
+// which is made if missing. Throws InputError. Returns their paths.
+std::vector<std::string> writeSweep(const SweepTable& table, const std::string& directory,
+                                    SweepFormat format = SweepFormat::kCsv);
+// Groups /parameters and /measures with a dataset of doubles per column, /state_hash and
+// /error, all as long as the cases that are done.
 void writeSweepHdf5(const SweepTable& table, const std::string& path);
 
 }  // namespace pincer::tasks

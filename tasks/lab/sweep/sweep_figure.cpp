@@ -1,4 +1,5 @@
-// The picture of a sweep: a line per value of the second number, small multiples over the third; a heat map where two have many values.
+// The picture of a sweep: a line per value of the second number, small multiples over the
+// third; a heat map where two have many values.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +31,8 @@ std::vector<double> parameterValues(const SweepTable& table, std::size_t paramet
 }
 
 bool isHeatMap(const SweepTable& table) {
-  return table.parameters.size() == 2 && parameterValues(table, 0).size() > 2 && parameterValues(table, 1).size() > kMostLines;
+  return table.parameters.size() == 2 && parameterValues(table, 0).size() > 2 &&
+         parameterValues(table, 1).size() > kMostLines;
 }
 
 // Positive, and a ratio apart rather than a difference.
@@ -55,7 +57,8 @@ std::string plottedTable(const SweepTable& table) {
     if (table.results[i].done) order.push_back(i);
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::lexicographical_compare(table.points[a].rbegin(), table.points[a].rend(), table.points[b].rbegin(), table.points[b].rend());
+    return std::lexicographical_compare(table.points[a].rbegin(), table.points[a].rend(), table.points[b].rbegin(),
+                                        table.points[b].rend());
   });
   const std::vector<double> xs = parameterValues(table, 0), ys = parameterValues(table, 1);
   PlotTable csv;
@@ -92,7 +95,8 @@ std::string measureAxis(const SweepTable& table, std::size_t measure, const char
   const double size = std::max(std::abs(low), std::abs(high));
   if (!(high >= low) || size == 0) return fmt::format("set {0}range [*:*]\nset format {0} '%g'\n", axis);
   if (high - low <= kNoChange * size)
-    return fmt::format("set {0}range [{1:.17g}:{2:.17g}]\nset format {0} '%g'\n", axis, low - 0.1 * size, high + 0.1 * size);
+    return fmt::format("set {0}range [{1:.17g}:{2:.17g}]\nset format {0} '%g'\n", axis, low - 0.1 * size,
+                       high + 0.1 * size);
   const int digits = std::clamp(static_cast<int>(std::ceil(math::log10(size / (high - low)))) + 2, 3, 12);
   return fmt::format("set {0}range [*:*]\nset format {0} '%.{1}g'\n", axis, digits);
 }
@@ -100,19 +104,23 @@ std::string measureAxis(const SweepTable& table, std::size_t measure, const char
 std::string parameterAxis(const std::vector<double>& values, const char* axis) {
   if (isLogarithmic(values)) {
     const double aside = math::pow(values.back() / values.front(), 0.04);
-    return fmt::format("set logscale {0}\nset {0}range [{1:.17g}:{2:.17g}]\n", axis, values.front() / aside, values.back() * aside);
+    return fmt::format("set logscale {0}\nset {0}range [{1:.17g}:{2:.17g}]\n", axis, values.front() / aside,
+                       values.back() * aside);
   }
-  const double size = values.back() - values.front(), aside = size > 0 ? 0.04 * size : std::max(0.1 * std::abs(values.front()), 1e-9);
+  const double size = values.back() - values.front(),
+               aside = size > 0 ? 0.04 * size : std::max(0.1 * std::abs(values.front()), 1e-9);
   return fmt::format("set {}range [{:.17g}:{:.17g}]\n", axis, values.front() - aside, values.back() + aside);
 }
 
 // The lines of a measure at one value of the third parameter.
 std::string linePanel(const SweepTable& table, std::size_t measure, std::size_t column, bool has_key) {
   const std::vector<double> lines = parameterValues(table, 1), columns = parameterValues(table, 2);
-  std::string script = fmt::format("set ylabel {}\n{}set key {}\n", column == 0 ? gnuplotString(table.measures[measure]) : "''",
-                                   measureAxis(table, measure, "y"), has_key ? "on" : "off");
+  std::string script =
+      fmt::format("set ylabel {}\n{}set key {}\n", column == 0 ? gnuplotString(table.measures[measure]) : "''",
+                  measureAxis(table, measure, "y"), has_key ? "on" : "off");
   if (columns.size() > 1)
-    script += fmt::format("set title {}\n", gnuplotString(fmt::format("{} = {:.6g}", table.parameters[2], columns[column])));
+    script +=
+        fmt::format("set title {}\n", gnuplotString(fmt::format("{} = {:.6g}", table.parameters[2], columns[column])));
   for (std::size_t k = 0; k < lines.size(); ++k) {
     std::string x = "1", title = "notitle";
     if (table.parameters.size() > 1) {
@@ -120,8 +128,9 @@ std::string linePanel(const SweepTable& table, std::size_t measure, std::size_t 
       x = fmt::format("($2 == {:.17g}{} ? $1 : NaN)", lines[k], own);
       title = "title " + gnuplotString(fmt::format("{} = {:.6g}", table.parameters[1], lines[k]));
     }
-    script += fmt::format("{}data skip 1 using {}:{} with linespoints pt 7 ps 0.8 lw 2 lc rgb '{}' {}", k ? ", " : "plot ", x,
-                          table.parameters.size() + 1 + measure, kLineColours[k % kLineColours.size()], title);
+    script +=
+        fmt::format("{}data skip 1 using {}:{} with linespoints pt 7 ps 0.8 lw 2 lc rgb '{}' {}", k ? ", " : "plot ", x,
+                    table.parameters.size() + 1 + measure, kLineColours[k % kLineColours.size()], title);
   }
   return script + "\n";
 }
@@ -129,16 +138,18 @@ std::string linePanel(const SweepTable& table, std::size_t measure, std::size_t 
 std::string heatPanel(const SweepTable& table, std::size_t measure) {
   const std::size_t borders = table.parameters.size() + table.measures.size() + 1;
   return fmt::format(
-      "set cblabel {}\n{}plot data skip 1 using 1:2:{}:{}:{}:{}:{} with boxxyerror fillstyle solid noborder linecolor palette notitle\n",
-      gnuplotString(table.measures[measure]), measureAxis(table, measure, "cb"), borders, borders + 1, borders + 2, borders + 3,
-      table.parameters.size() + 1 + measure);
+      "set cblabel {}\n{}plot data skip 1 using 1:2:{}:{}:{}:{}:{} with boxxyerror fillstyle solid noborder linecolor "
+      "palette notitle\n",
+      gnuplotString(table.measures[measure]), measureAxis(table, measure, "cb"), borders, borders + 1, borders + 2,
+      borders + 3, table.parameters.size() + 1 + measure);
 }
 
 }  // namespace
 
 bool isDrawable(const SweepTable& table) {
-  return table.parameters.size() < 3 || (table.parameters.size() == 3 && parameterValues(table, 1).size() <= kMostLines &&
-                                         parameterValues(table, 2).size() <= kMostColumns);
+  return table.parameters.size() < 3 ||
+         (table.parameters.size() == 3 && parameterValues(table, 1).size() <= kMostLines &&
+          parameterValues(table, 2).size() <= kMostColumns);
 }
 
 Figure sweepFigure(const SweepTable& table) {
@@ -150,14 +161,17 @@ Figure sweepFigure(const SweepTable& table) {
   figure.width = columns > 1 ? static_cast<int>(900 * columns) : 1600;
   figure.height = static_cast<int>(140 + 520 * panels);
   figure.data = {{"sweep.csv", plottedTable(table)}};
-  figure.script = figurePrelude("sweep") +
-                  fmt::format("set multiplot layout {},{} title {}\nset grid\nset lmargin 16\nset tmargin 3\nset key {}\n", panels, columns,
-                              gnuplotString(table.what), columns > 1 ? "inside top left vertical opaque" : "outside right top vertical") +
-                  fmt::format("set xlabel {}\n{}set offsets 0, 0, graph 0.06, graph 0.06\n", gnuplotString(table.parameters[0]),
-                              parameterAxis(parameterValues(table, 0), "x"));
+  figure.script =
+      figurePrelude("sweep") +
+      fmt::format("set multiplot layout {},{} title {}\nset grid\nset lmargin 16\nset tmargin 3\nset key {}\n", panels,
+                  columns, gnuplotString(table.what),
+                  columns > 1 ? "inside top left vertical opaque" : "outside right top vertical") +
+      fmt::format("set xlabel {}\n{}set offsets 0, 0, graph 0.06, graph 0.06\n", gnuplotString(table.parameters[0]),
+                  parameterAxis(parameterValues(table, 0), "x"));
   if (isHeatMap(table)) {
     figure.script += fmt::format(
-        "unset grid\nset offsets\nset ylabel {}\n{}set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 "
+        "unset grid\nset offsets\nset ylabel {}\n{}set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 "
+        "'#5ec962', 4 "
         "'#fde725')\nset rmargin 22\n",
         gnuplotString(table.parameters[1]), parameterAxis(parameterValues(table, 1), "y"));
   }

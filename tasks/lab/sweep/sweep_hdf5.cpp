@@ -100,7 +100,8 @@ void fill(Hdf5File& file, const SweepTable& table) {
     file.add("/parameters/" + linkName(table.parameters[p]), column([&](std::size_t i) { return table.points[i][p]; }));
   file.addGroup("/measures");
   for (std::size_t m = 0; m < table.measures.size(); ++m)
-    file.add("/measures/" + linkName(table.measures[m]), column([&](std::size_t i) { return table.results[i].values[m]; }));
+    file.add("/measures/" + linkName(table.measures[m]),
+             column([&](std::size_t i) { return table.results[i].values[m]; }));
   file.add("/state_hash", hashes);
   file.add("/error", errors);
 }

@@ -15,12 +15,13 @@ std::string quotedWord(const std::string& word) {
 }
 
 std::string shardCommand(const MachinePlan& plan, const std::string& index) {
-  return fmt::format("{} --threads {} --shard {}/{} --out {}/shard-{} --resume", shellText(plan.command), plan.threads, index, plan.shards,
-                     quotedWord(plan.out), index);
+  return fmt::format("{} --threads {} --shard {}/{} --out {}/shard-{} --resume", shellText(plan.command), plan.threads,
+                     index, plan.shards, quotedWord(plan.out), index);
 }
 
 std::string mergeCommand(const MachinePlan& plan) {
-  return fmt::format("{} sweep merge {}/shard-* --out {}", quotedWord(plan.command.at(0)), quotedWord(plan.out), quotedWord(plan.out));
+  return fmt::format("{} sweep merge {}/shard-* --out {}", quotedWord(plan.command.at(0)), quotedWord(plan.out),
+                     quotedWord(plan.out));
 }
 
 }  // namespace
@@ -34,7 +35,8 @@ std::string shellText(const std::vector<std::string>& arguments) {
 std::string parallelFile(const MachinePlan& plan) {
   std::string text = fmt::format(
       "# A shard of the sweep per line. On this machine:   parallel --joblog {0}/joblog --retries 3 < FILE\n"
-      "# On several, with pincer and {0} at the same paths: parallel --sshlogin HOST1,HOST2 --workdir $PWD --joblog {0}/joblog --retries 3 "
+      "# On several, with pincer and {0} at the same paths: parallel --sshlogin HOST1,HOST2 --workdir $PWD --joblog "
+      "{0}/joblog --retries 3 "
       "< FILE\n"
       "# What was killed goes on when the same is run again. When all are done:\n"
       "#   {1}\n",

@@ -1,6 +1,8 @@
-// sweep_machines: ready files for those who have several machines: a list of commands for GNU parallel, a job array for Slurm.
+// sweep_machines: ready files for those who have several machines: a list of commands
+// for GNU parallel, a job array for Slurm.
 //
-// Both run one shard per job, into DIR/shard-I, with --resume, so that a job which was killed or requeued goes on; then merge.
+// Both run one shard per job, into DIR/shard-I, with --resume, so that a job which
+// was killed or requeued goes on; then merge.
 #pragma once
 #include <string>
 #include <vector>

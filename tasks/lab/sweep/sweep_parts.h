@@ -16,10 +16,12 @@ SweepTable tableOf(const std::string& what, const SweepGrid& grid);
 // Throws InputError for one that is there already.
 void addMeasure(SweepTable& table, const std::string& label, bool plotted);
 
-// Parameters and points of a definition, as members of the object that is open; and the fingerprint of pincer's sources.
+// Parameters and points of a definition, as members of the object that is open;
+// and the fingerprint of pincer's sources.
 void writeGrid(const SweepTable& table, JsonWriter& json);
 
-// Puts a file that a library wrote under another name in place of `path`, flushed to the disk: a PartFile that was released can't flush.
+// Puts a file that a library wrote under another name in place of `path`, flushed to the disk:
+// a PartFile that was released can't flush.
 void placeWritten(const std::string& written, const std::string& path);
 
 // Of a study with these participants.

@@ -78,7 +78,12 @@ std::string sweepJson(const SweepTable& table) {
     for (const double value : table.points[i]) json.value(value);
     json.endArray().key("measures").beginArray();
     for (const double value : table.results[i].values) json.value(value);
-    json.endArray().key("state_hash").value(table.results[i].state_hash).key("error").value(table.results[i].error).endObject();
+    json.endArray()
+        .key("state_hash")
+        .value(table.results[i].state_hash)
+        .key("error")
+        .value(table.results[i].error)
+        .endObject();
   }
   return json.endArray().endObject().text() + "\n";
 }

@@ -36,12 +36,15 @@ std::string columnsOf(const SweepTable& table, const char* type) {
 
 std::string namedView(const SweepTable& table) {
   std::string text = "CREATE VIEW named AS SELECT \"case\"";
-  for (std::size_t i = 0; i < table.parameters.size(); ++i) text += fmt::format(", p{} AS {}", i, quoted(table.parameters[i]));
-  for (std::size_t i = 0; i < table.measures.size(); ++i) text += fmt::format(", m{} AS {}", i, quoted(table.measures[i]));
+  for (std::size_t i = 0; i < table.parameters.size(); ++i)
+    text += fmt::format(", p{} AS {}", i, quoted(table.parameters[i]));
+  for (std::size_t i = 0; i < table.measures.size(); ++i)
+    text += fmt::format(", m{} AS {}", i, quoted(table.measures[i]));
   return text + ", state_hash, error FROM result";
 }
 
-void insertNames(Database& d, const char* table, const std::vector<std::string>& names, const std::vector<bool>& plotted) {
+void insertNames(Database& d, const char* table, const std::vector<std::string>& names,
+                 const std::vector<bool>& plotted) {
   Statement insert(d, fmt::format("INSERT INTO {} VALUES (?, ?, ?)", table));
   for (std::size_t i = 0; i < names.size(); ++i) {
     insert.bind(0, static_cast<std::int64_t>(i));
@@ -56,7 +59,8 @@ void makeTables(Database& d, const std::string& definition, const SweepShard& sh
   d.run("CREATE TABLE sweep (what TEXT, definition TEXT, cases INTEGER, shard INTEGER, shards INTEGER, made_by TEXT)");
   d.run("CREATE TABLE parameter (number INTEGER PRIMARY KEY, name TEXT, plotted INTEGER)");
   d.run("CREATE TABLE measure (number INTEGER PRIMARY KEY, name TEXT, plotted INTEGER)");
-  d.run(fmt::format("CREATE TABLE result (\"case\" INTEGER PRIMARY KEY{}, state_hash TEXT, error TEXT)", columnsOf(table, " REAL")));
+  d.run(fmt::format("CREATE TABLE result (\"case\" INTEGER PRIMARY KEY{}, state_hash TEXT, error TEXT)",
+                    columnsOf(table, " REAL")));
   d.run(namedView(table));
   Statement insert(d, "INSERT INTO sweep VALUES (?, ?, ?, ?, ?, ?)");
   SessionInfo here;
@@ -107,11 +111,13 @@ std::vector<std::string> namesIn(const Database& d, const char* table, std::vect
 }
 
 void readResults(const Database& d, SweepTable& table) {
-  Statement select(d, fmt::format("SELECT \"case\"{}, state_hash, error FROM result ORDER BY \"case\"", columnsOf(table, "")));
+  Statement select(
+      d, fmt::format("SELECT \"case\"{}, state_hash, error FROM result ORDER BY \"case\"", columnsOf(table, "")));
   while (select.step()) {
     const auto point = static_cast<std::size_t>(select.integer(0));
     if (point >= table.points.size())
-      throw InputError(fmt::format("{}: case {} of {} can't be. The file is damaged.", d.path(), point, table.points.size()));
+      throw InputError(
+          fmt::format("{}: case {} of {} can't be. The file is damaged.", d.path(), point, table.points.size()));
     int column = 1;
     std::vector<double> values;
     for (std::size_t i = 0; i < table.parameters.size(); ++i) values.push_back(select.real(column++));
@@ -127,7 +133,8 @@ void readResults(const Database& d, SweepTable& table) {
 constexpr std::int64_t kMostCases = 1'000'000;  // more than any sweep has: a damaged file doesn't take all memory
 
 StoredSweep read(const Database& d, const std::string& directory) {
-  if (d.integer("PRAGMA application_id") != kSweepId) throw InputError(d.path() + ": is no sweep that `pincer sweep --out` wrote.");
+  if (d.integer("PRAGMA application_id") != kSweepId)
+    throw InputError(d.path() + ": is no sweep that `pincer sweep --out` wrote.");
   if (d.integer("PRAGMA user_version") != kSweepFormat)
     throw InputError(d.path() + ": was written by another version of pincer. Run the sweep again.");
   StoredSweep sweep;
@@ -137,7 +144,8 @@ StoredSweep read(const Database& d, const std::string& directory) {
   sweep.table.what = row.text(0);
   sweep.definition = row.text(1);
   const std::int64_t cases = row.integer(2);
-  if (cases < 0 || cases > kMostCases) throw InputError(fmt::format("{}: {} cases can't be. The file is damaged.", d.path(), cases));
+  if (cases < 0 || cases > kMostCases)
+    throw InputError(fmt::format("{}: {} cases can't be. The file is damaged.", d.path(), cases));
   sweep.shard = {static_cast<int>(row.integer(3)), static_cast<int>(row.integer(4))};
   sweep.table.parameters = namesIn(d, "parameter", nullptr);
   sweep.table.measures = namesIn(d, "measure", &sweep.table.plotted);
@@ -154,7 +162,8 @@ std::string shardText(const SweepShard& shard) {
 // Cases that the shard has and that aren't done.
 std::size_t openCases(const StoredSweep& sweep) {
   std::size_t open = 0;
-  for (std::size_t i = 0; i < sweep.table.results.size(); ++i) open += sweep.shard.has(i) && !sweep.table.results[i].done ? 1 : 0;
+  for (std::size_t i = 0; i < sweep.table.results.size(); ++i)
+    open += sweep.shard.has(i) && !sweep.table.results[i].done ? 1 : 0;
   return open;
 }
 
@@ -193,18 +202,19 @@ class SweepStore::Impl {
  private:
   void takeUp(SweepJob& job, bool resume) {
     if (!resume)
-      throw InputError(
-          fmt::format("{}: a sweep is there already. Go on with it by --resume, or choose another folder.", fileOf(directory_)));
+      throw InputError(fmt::format("{}: a sweep is there already. Go on with it by --resume, or choose another folder.",
+                                   fileOf(directory_)));
     const StoredSweep there = readSweep(directory_);
     if (there.definition != definition_) {
       throw InputError(
-          fmt::format("{}: is another sweep, or was made by another build of pincer. Choose another folder, or give the same command "
+          fmt::format("{}: is another sweep, or was made by another build of pincer. Choose another folder, or give "
+                      "the same command "
                       "to the same build.",
                       fileOf(directory_)));
     }
     if (there.shard.index != shard_.index || there.shard.count != shard_.count)
-      throw InputError(fmt::format("{}: is {}, not {}. Each shard has a folder of its own.", fileOf(directory_), shardText(there.shard),
-                                   shardText(shard_)));
+      throw InputError(fmt::format("{}: is {}, not {}. Each shard has a folder of its own.", fileOf(directory_),
+                                   shardText(there.shard), shardText(shard_)));
     job.table.results = there.table.results;
   }
 
@@ -235,7 +245,8 @@ StoredSweep readSweep(const std::string& directory) {
   return read(d, directory);
 }
 
-void writeSweepStore(const std::string& directory, const std::string& definition, const SweepShard& shard, const SweepTable& table) {
+void writeSweepStore(const std::string& directory, const std::string& definition, const SweepShard& shard,
+                     const SweepTable& table) {
   PartFile part(fileOf(directory));
   part.release();
   {
@@ -258,18 +269,19 @@ StoredSweep mergeSweeps(const std::vector<std::string>& directories) {
   for (const std::string& directory : directories) {
     StoredSweep part = readSweep(directory);
     if (part.definition != whole.definition)
-      throw InputError(
-          fmt::format("{} and {}: aren't shards of one sweep, or were made by different builds of pincer.", directories[0], directory));
+      throw InputError(fmt::format("{} and {}: aren't shards of one sweep, or were made by different builds of pincer.",
+                                   directories[0], directory));
     if (part.shard.count != count || part.shard.index < 1 || part.shard.index > count)
-      throw InputError(fmt::format("{} is {}, but {} is one of {}. Merge shards of one division.", directory, shardText(part.shard),
-                                   directories[0], count));
+      throw InputError(fmt::format("{} is {}, but {} is one of {}. Merge shards of one division.", directory,
+                                   shardText(part.shard), directories[0], count));
     std::string& first = from[static_cast<std::size_t>(part.shard.index - 1)];
     if (!first.empty())
-      throw InputError(fmt::format("{} is there twice: in {} and in {}. Leave one out.", shardText(part.shard), first, directory));
+      throw InputError(
+          fmt::format("{} is there twice: in {} and in {}. Leave one out.", shardText(part.shard), first, directory));
     first = directory;
     if (const std::size_t open = openCases(part); open > 0)
-      throw InputError(
-          fmt::format("{}: {} lacks {} of its cases. Give its command again with --resume.", directory, shardText(part.shard), open));
+      throw InputError(fmt::format("{}: {} lacks {} of its cases. Give its command again with --resume.", directory,
+                                   shardText(part.shard), open));
     for (std::size_t i = 0; i < part.table.results.size(); ++i) {
       if (!part.shard.has(i)) continue;
       whole.table.points[i] = std::move(part.table.points[i]);
@@ -278,9 +290,11 @@ StoredSweep mergeSweeps(const std::vector<std::string>& directories) {
   }
   std::string missing;
   for (int i = 0; i < count; ++i) {
-    if (from[static_cast<std::size_t>(i)].empty()) missing += fmt::format("{}{}/{}", missing.empty() ? "" : ", ", i + 1, count);
+    if (from[static_cast<std::size_t>(i)].empty())
+      missing += fmt::format("{}{}/{}", missing.empty() ? "" : ", ", i + 1, count);
   }
-  if (!missing.empty()) throw InputError(fmt::format("shards are missing: {}. Run them, and give all folders.", missing));
+  if (!missing.empty())
+    throw InputError(fmt::format("shards are missing: {}. Run them, and give all folders.", missing));
   whole.shard = {};
   return whole;
 }

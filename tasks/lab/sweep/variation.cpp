@@ -33,7 +33,8 @@ std::vector<std::string> partsOf(const std::string& text, char separator) {
 double valueIn(const std::string& text, const std::string& word) {
   char* end = nullptr;
   const double value = std::strtod(word.c_str(), &end);
-  if (word.empty() || *end != '\0' || !std::isfinite(value)) refuseVariation(text, fmt::format("\"{}\" isn't a number.", printable(word)));
+  if (word.empty() || *end != '\0' || !std::isfinite(value))
+    refuseVariation(text, fmt::format("\"{}\" isn't a number.", printable(word)));
   return value;
 }
 
@@ -47,7 +48,8 @@ std::vector<double> rangeOf(const std::string& text, const std::vector<std::stri
   const bool ratios = parts.size() == 4 && parts[3] == "log";
   if (parts.size() != 3 && !ratios) refuseVariation(text, "that isn't a range.");
   const double from = valueIn(text, parts[0]), to = valueIn(text, parts[1]), count = valueIn(text, parts[2]);
-  if (!(count >= 2 && count <= 10'000) || count != std::floor(count)) refuseVariation(text, "N isn't a whole number from 2 to 10000.");
+  if (!(count >= 2 && count <= 10'000) || count != std::floor(count))
+    refuseVariation(text, "N isn't a whole number from 2 to 10000.");
   if (ratios && !(from > 0 && to > 0)) refuseVariation(text, "equal ratios need positive ends.");
   std::vector<double> values;
   const int last = static_cast<int>(count) - 1;
@@ -66,7 +68,8 @@ void checkPaths(const std::vector<std::string>& paths) {
     if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), paths[i]) ==
         paths.begin() + static_cast<std::ptrdiff_t>(i))
       continue;
-    throw InputError(fmt::format("sweep: {} is given twice. Name two numbers, or give all values at once: A,B,C", printable(paths[i])));
+    throw InputError(fmt::format("sweep: {} is given twice. Name two numbers, or give all values at once: A,B,C",
+                                 printable(paths[i])));
   }
 }
 
@@ -93,8 +96,10 @@ std::vector<std::string> cellsOf(std::string_view line) {
   return cells;
 }
 
-std::vector<double> caseOf(const std::string& file, std::int64_t line, const std::vector<std::string>& cells, std::size_t columns) {
-  if (cells.size() != columns) throw InputError(fmt::format("{}:{}: {} values under {} headings.", file, line, cells.size(), columns));
+std::vector<double> caseOf(const std::string& file, std::int64_t line, const std::vector<std::string>& cells,
+                           std::size_t columns) {
+  if (cells.size() != columns)
+    throw InputError(fmt::format("{}:{}: {} values under {} headings.", file, line, cells.size(), columns));
   std::vector<double> values;
   for (const std::string& cell : cells) {
     char* end = nullptr;
@@ -110,7 +115,8 @@ std::vector<double> caseOf(const std::string& file, std::int64_t line, const std
 
 Variation parseVariation(const std::string& text) {
   const std::size_t equals = text.find('=');
-  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) refuseVariation(text, "a path, = and values are needed.");
+  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size())
+    refuseVariation(text, "a path, = and values are needed.");
   Variation variation{text.substr(0, equals), {}};
   const std::string values = text.substr(equals + 1);
   if (values.find(':') != std::string::npos) {
@@ -144,12 +150,14 @@ SweepGrid zipped(const std::vector<Variation>& variations, std::size_t most) {
   checkCount(cases, most);
   for (const Variation& variation : variations) {
     if (variation.values.size() == cases || variation.values.size() == 1) continue;
-    throw InputError(fmt::format("sweep: --zip takes lists of one length, and {} has {} values beside {}. Give as many, or one for all.",
-                                 printable(variation.path), variation.values.size(), cases));
+    throw InputError(fmt::format(
+        "sweep: --zip takes lists of one length, and {} has {} values beside {}. Give as many, or one for all.",
+        printable(variation.path), variation.values.size(), cases));
   }
   for (std::size_t i = 0; i < cases; ++i) {
     grid.points.emplace_back();
-    for (const Variation& variation : variations) grid.points.back().push_back(variation.values[variation.values.size() == 1 ? 0 : i]);
+    for (const Variation& variation : variations)
+      grid.points.back().push_back(variation.values[variation.values.size() == 1 ? 0 : i]);
   }
   return grid;
 }

@@ -4,7 +4,8 @@
 //   PATH=FROM:TO:N:log   likewise, in equal ratios
 //   PATH=A,B,C           these
 //
-// Values of a range are those that a person would write: rounded to the 15 digits that doubles keep of the larger end (0.3, not
+// Values of a range are those that a person would write: rounded to the 15 digits that
+// doubles keep of the larger end (0.3, not
 // 0.30000000000000004); in equal ratios to 12 digits.
 #pragma once
 #include <string>
@@ -26,8 +27,8 @@ struct SweepGrid {
   std::vector<std::vector<double>> points;
 };
 
-// Every combination of the variations' values; the last varies fastest. These throw InputError where there are more than `most` cases, a path is
-// there twice, or lengths don't fit.
+// Every combination of the variations' values; the last varies fastest. These throw InputError where there are more
+// than `most` cases, a path is there twice, or lengths don't fit.
 SweepGrid crossed(const std::vector<Variation>& variations, std::size_t most);
 // The first values of all, the second ones, ...; a single value stands for all.
 SweepGrid zipped(const std::vector<Variation>& variations, std::size_t most);

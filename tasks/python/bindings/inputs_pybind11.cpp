@@ -29,27 +29,33 @@ void addTable(py::class_<Inputs>& inputs, const char* name, Member tasks::SceneI
 }  // namespace
 
 void bindInputs(py::module_& module) {
-  py::class_<Inputs> inputs(module, "Inputs", "What a step is to do in place of the scene's trajectories. NaN: not said.");
+  py::class_<Inputs> inputs(module, "Inputs",
+                            "What a step is to do in place of the scene's trajectories. NaN: not said.");
   inputs
-      .def(py::init([](std::shared_ptr<Model> model) { return std::make_unique<Inputs>(std::move(model)); }), py::arg("model"),
-           "Nothing is said.")
+      .def(py::init([](std::shared_ptr<Model> model) { return std::make_unique<Inputs>(std::move(model)); }),
+           py::arg("model"), "Nothing is said.")
       .def("clear", &Inputs::clear, "Nothing is said any more; views stay valid.");
-  addTable(
-      inputs, "finger_position", &tasks::SceneInputs::finger_place,
-      "(nfinger, 3) places of the devices at the end of the step [m]; over several ticks they go there evenly. NaN: State.finger().target, "
-      "else the scene's trajectory.");
-  addTable(inputs, "finger_velocity", &tasks::SceneInputs::finger_velocity, "(nfinger, 3) of the devices [m/s]; NaN: that of the way.");
+  addTable(inputs, "finger_position", &tasks::SceneInputs::finger_place,
+           "(nfinger, 3) places of the devices at the end of the step [m]; over several ticks they go there evenly. "
+           "NaN: State.finger().target, "
+           "else the scene's trajectory.");
+  addTable(inputs, "finger_velocity", &tasks::SceneInputs::finger_velocity,
+           "(nfinger, 3) of the devices [m/s]; NaN: that of the way.");
   addTable(inputs, "finger_rotation", &tasks::SceneInputs::finger_turn,
            "(nfinger, 4) quaternions w, x, y, z of the finger frames; NaN: the scene's.");
-  addTable(inputs, "finger_force", &tasks::SceneInputs::finger_force, "(nfinger, 3) on each fingertip, besides the scene's [N].");
+  addTable(inputs, "finger_force", &tasks::SceneInputs::finger_force,
+           "(nfinger, 3) on each fingertip, besides the scene's [N].");
   addTable(inputs, "body_force", &tasks::SceneInputs::body_force,
            "(nbody, 6) force through the centre of mass [N] and torque [N m], world axes, all through the step.");
   addTable(inputs, "motion_position", &tasks::SceneInputs::motion_place,
-           "(len(model.driven), 7) x, y, z [m], quaternion w, x, y, z of driven bodies at the end of every tick; NaN: the scene's.");
+           "(len(model.driven), 7) x, y, z [m], quaternion w, x, y, z of driven bodies at the end of every tick; NaN: "
+           "the scene's.");
   addTable(inputs, "motion_velocity", &tasks::SceneInputs::motion_rate,
-           "(len(model.driven), 6) velocity of the body's origin [m/s], angular velocity [rad/s]; counts where motion_position is said.");
+           "(len(model.driven), 6) velocity of the body's origin [m/s], angular velocity [rad/s]; counts where "
+           "motion_position is said.");
   addTable(inputs, "drive_target", &tasks::SceneInputs::drive_target,
-           "(ndrive) what each drive is told all through the step: a position, a rate or a force, as its type has it; NaN: what the scene "
+           "(ndrive) what each drive is told all through the step: a position, a rate or a force, as its type has it; "
+           "NaN: what the scene "
            "tells it.");
   addTable(inputs, "gravity", &tasks::SceneInputs::gravity, "(3) [m/s^2]; NaN: the scene's.");
 }

@@ -57,20 +57,24 @@ std::string reprOf(const Model& model) {
 }  // namespace
 
 void bindModel(py::module_& module) {
-  py::class_<Model, std::shared_ptr<Model>>(module, "Model",
-                                            "A scene, built and checked once, then constant; any number of states may step it.")
+  py::class_<Model, std::shared_ptr<Model>>(
+      module, "Model", "A scene, built and checked once, then constant; any number of states may step it.")
       .def_readonly("name", &Model::name, "Path or name that it was loaded from.")
       .def_readonly("text", &Model::text, "Of the scene, as it was read.")
       .def_property_readonly(
           "description", [](const Model& m) { return m.scene.description; }, "For people.")
       .def_property_readonly("bodies", &bodyNames, "Names of the bodies, in the order of State.position.")
       .def_property_readonly("fingers", &fingerNames, "Names of the fingers, in the order of Inputs.finger_position.")
-      .def_property_readonly("driven", &drivenNames, "Names of the bodies that follow motions, in the order of Inputs.motion_position.")
-      .def_property_readonly("joints", &jointNames, "Names of the pivots and sliders, in the order of State.joint_position.")
+      .def_property_readonly("driven", &drivenNames,
+                             "Names of the bodies that follow motions, in the order of Inputs.motion_position.")
+      .def_property_readonly("joints", &jointNames,
+                             "Names of the pivots and sliders, in the order of State.joint_position.")
       .def_property_readonly("drives", &driveNames, "Names of the drives, in the order of Inputs.drive_target.")
-      .def_property_readonly("sensors", &sensorNames, "Quantities that the scene records, in the order of rollout's sensordata.")
+      .def_property_readonly("sensors", &sensorNames,
+                             "Quantities that the scene records, in the order of rollout's sensordata.")
       .def_property_readonly(
-          "remarks", [](const Model& m) { return m.scene.remarks; }, "What of its robots' files has no effect, a line each.")
+          "remarks", [](const Model& m) { return m.scene.remarks; },
+          "What of its robots' files has no effect, a line each.")
       .def_property_readonly("masses", &masses, "Of the bodies [kg]; 0 for those that don't move freely.")
       .def_property_readonly(
           "tick", [](const Model& m) { return m.scene.options.h; }, "Length of a step [s].")
@@ -95,12 +99,17 @@ void bindModel(py::module_& module) {
       .def("__repr__", &reprOf)
       .def(py::pickle([](const Model& m) { return py::make_tuple(m.text, m.name); },
                       [](const py::tuple& source) {
-                        return std::const_pointer_cast<Model>(parseModel(source[0].cast<std::string>(), source[1].cast<std::string>()));
+                        return std::const_pointer_cast<Model>(
+                            parseModel(source[0].cast<std::string>(), source[1].cast<std::string>()));
                       }));
   module.def(
-      "load_file", [](const std::string& path) { return std::const_pointer_cast<Model>(loadModel(path)); }, py::arg("path"));
+      "load_file", [](const std::string& path) { return std::const_pointer_cast<Model>(loadModel(path)); },
+      py::arg("path"));
   module.def(
-      "load_text", [](const std::string& text, const std::string& name) { return std::const_pointer_cast<Model>(parseModel(text, name)); },
+      "load_text",
+      [](const std::string& text, const std::string& name) {
+        return std::const_pointer_cast<Model>(parseModel(text, name));
+      },
       py::arg("text"), py::arg("name"));
 }
 

@@ -11,7 +11,8 @@ namespace pincer::python {
 namespace {
 
 ContactRow rowOf(const engine::ContactReport& c) {
-  ContactRow row{c.id, c.body, c.shape, c.other_body, c.other_shape, c.point, {}, {}, c.gap, {}, {}, c.mu, c.pushes, c.sliding};
+  ContactRow row{c.id, c.body, c.shape, c.other_body, c.other_shape, c.point,  {},
+                 {},   c.gap,  {},      {},           c.mu,          c.pushes, c.sliding};
   std::copy_n(c.p_W.data(), 3, row.place);
   std::copy_n(c.n_W.data(), 3, row.normal);
   std::copy_n(c.f_W.data(), 3, row.force);
@@ -40,7 +41,8 @@ ModelPointer parseModel(const std::string& text, const std::string& name) {
 class State::InUse {
  public:
   explicit InUse(State& state) : busy_(state.busy_) {
-    if (busy_.exchange(true)) throw InputError("this state is being stepped by another thread. Give each thread a copy() of its own.");
+    if (busy_.exchange(true))
+      throw InputError("this state is being stepped by another thread. Give each thread a copy() of its own.");
   }
   ~InUse() { busy_ = false; }
   InUse(const InUse&) = delete;
@@ -72,10 +74,12 @@ State::State(const State& other)
   refresh();
 }
 
-tasks::StepsReport State::step(const tasks::SceneInputs* inputs, std::int64_t ticks, const std::function<bool()>& stop) {
+tasks::StepsReport State::step(const tasks::SceneInputs* inputs, std::int64_t ticks,
+                               const std::function<bool()>& stop) {
   const InUse in_use(*this);
   if (!stepper_) stepper_ = std::make_unique<tasks::SceneStepper>(*model_);
-  const tasks::StepsReport report = inputs ? stepper_->step(scene_, *inputs, ticks, stop) : stepper_->step(scene_, ticks, stop);
+  const tasks::StepsReport report =
+      inputs ? stepper_->step(scene_, *inputs, ticks, stop) : stepper_->step(scene_, ticks, stop);
   stepped_ = true;
   refresh();
   return report;
@@ -145,8 +149,12 @@ FingerFelt State::felt(int finger) const {
 
 tasks::Moment State::moment() const {
   if (!stepped_) stepper_ = std::make_unique<tasks::SceneStepper>(*model_);  // in which nothing touches yet
-  return {model_->grasp,        scene_.grasp,        stepped_ ? stepper_->fingers() : std::span<const grasp::FingerReport>(reports_),
-          model_->scene.starts, stepper_->scratch(), model_->scene.frames};
+  return {model_->grasp,
+          scene_.grasp,
+          stepped_ ? stepper_->fingers() : std::span<const grasp::FingerReport>(reports_),
+          model_->scene.starts,
+          stepper_->scratch(),
+          model_->scene.frames};
 }
 
 const grasp::GraspScratch* State::scratch() const { return stepped_ ? &stepper_->scratch() : nullptr; }

@@ -1,4 +1,5 @@
-// objects: what Python holds of pincer: a model with its source, a state whose numbers can be watched, inputs, a pool. They know nothing of Python.
+// objects: what Python holds of pincer: a model with its source, a state whose numbers can be watched,
+// inputs, a pool. They know nothing of Python.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -41,7 +42,8 @@ struct FingerFelt {
   std::vector<grasp::Taxel> pressure;
 };
 
-// A state and what is derived from it: rows of places, rates and joints at fixed addresses, which follow every step; contacts and reports of the last tick.
+// A state and what is derived from it: rows of places, rates and joints at fixed addresses, which follow every
+// step; contacts and reports of the last tick.
 class State {
  public:
   explicit State(ModelPointer model);

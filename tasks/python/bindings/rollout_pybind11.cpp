@@ -49,13 +49,14 @@ void checkModels(const Models& models, const std::vector<State*>& states) {
 template <class Array>
 auto spanOf(std::optional<Array>& array) {
   using Number = typename Array::value_type;
-  return array ? std::span<Number>(array->mutable_data(), static_cast<std::size_t>(array->size())) : std::span<Number>();
+  return array ? std::span<Number>(array->mutable_data(), static_cast<std::size_t>(array->size()))
+               : std::span<Number>();
 }
 
 // Shapes have been checked by rollout.py, which makes what isn't given. The states are left after their last tick.
 void run(tasks::RolloutPool& pool, const Models& models, const std::vector<State*>& states, std::int64_t nstep,
-         std::optional<Doubles> controls, std::optional<Doubles> state, std::optional<Doubles> sensors, std::optional<Flags> status,
-         std::int64_t chunk_size) {
+         std::optional<Doubles> controls, std::optional<Doubles> state, std::optional<Doubles> sensors,
+         std::optional<Flags> status, std::int64_t chunk_size) {
   checkModels(models, states);
   Lent lent(states);
   tasks::RolloutJob job;
@@ -81,7 +82,8 @@ void bindRollout(py::module_& module) {
       .def(py::init<int>(), py::arg("threads"))
       .def_property_readonly("threads", &tasks::RolloutPool::threads)
       .def("run", &run, py::arg("models"), py::arg("states"), py::arg("nstep"), py::arg("controls").noconvert(),
-           py::arg("state").noconvert(), py::arg("sensors").noconvert(), py::arg("status").noconvert(), py::arg("chunk_size"));
+           py::arg("state").noconvert(), py::arg("sensors").noconvert(), py::arg("status").noconvert(),
+           py::arg("chunk_size"));
 }
 
 }  // namespace pincer::python

@@ -18,7 +18,8 @@ py::object statusClass() {
     members[name.c_str()] = kind.bit;
   }
   py::object flags = py::module_::import("enum").attr("IntFlag")("Status", members, py::arg("module") = "pincer");
-  flags.attr("__doc__") = "What happened in a step that a caller may have to know; pincer.remedies(status) says what to change.";
+  flags.attr("__doc__") =
+      "What happened in a step that a caller may have to know; pincer.remedies(status) says what to change.";
   return flags;
 }
 
@@ -30,7 +31,8 @@ std::vector<std::string> remediesOf(std::uint32_t status) {
   return remedies;
 }
 
-// The value that step returns: CPython's own named tuple, which takes a fraction of the time that an object of pybind11's takes to make.
+// The value that step returns: CPython's own named tuple, which takes a fraction of the time
+// that an object of pybind11's takes to make.
 PyStructSequence_Field kReportFields[] = {{"status", "Flags of all its ticks together (Status)."},
                                           {"ok", "No flag is up."},
                                           {"remedies", "A sentence per flag: what happened, and what to change."},
@@ -52,7 +54,9 @@ py::object reportOf(const tasks::StepsReport& report) {
   const bool ok = report.status == engine::kStepOk;
   auto tuple = py::reinterpret_steal<py::object>(PyStructSequence_New(report_type));
   if (!tuple) throw py::error_already_set();
-  const auto set = [&](Py_ssize_t field, py::object value) { PyStructSequence_SetItem(tuple.ptr(), field, value.release().ptr()); };
+  const auto set = [&](Py_ssize_t field, py::object value) {
+    PyStructSequence_SetItem(tuple.ptr(), field, value.release().ptr());
+  };
   set(0, statusOf(report.status));
   set(1, py::bool_(ok));
   set(2, ok ? py::tuple() : py::tuple(py::cast(remediesOf(report.status))));
@@ -64,7 +68,8 @@ py::object reportOf(const tasks::StepsReport& report) {
 }
 
 py::object step(const Model& model, State& state, std::int64_t nstep, const Inputs* inputs) {
-  if (&state.model() != &model) throw InputError("step: the state is one of another model. Make it with pincer.State(model).");
+  if (&state.model() != &model)
+    throw InputError("step: the state is one of another model. Make it with pincer.State(model).");
   if (inputs && inputs->model.get() != &model)
     throw InputError("step: the inputs are those of another model. Make them with pincer.Inputs(model).");
   if (nstep < 1) throw InputError(fmt::format("step: nstep = {} is out of range [1, inf).", nstep));
@@ -89,10 +94,10 @@ void bindStep(py::module_& module) {
   report_type = PyStructSequence_NewType(&kReportDescription);
   if (!report_type) throw py::error_already_set();
   module.attr("StepReport") = py::handle(reinterpret_cast<PyObject*>(report_type));
-  module.def(
-      "step", &step, py::arg("model"), py::arg("state"), py::arg("nstep") = 1, py::arg("inputs") = py::none(),
-      "nstep ticks of the model. Fingers and driven bodies follow the scene's trajectories but where inputs or targets say otherwise. "
-      "Releases the interpreter lock. Returns a StepReport.");
+  module.def("step", &step, py::arg("model"), py::arg("state"), py::arg("nstep") = 1, py::arg("inputs") = py::none(),
+             "nstep ticks of the model. Fingers and driven bodies follow the scene's trajectories but where inputs or "
+             "targets say otherwise. "
+             "Releases the interpreter lock. Returns a StepReport.");
 }
 
 }  // namespace pincer::python

@@ -132,8 +132,8 @@ tasks::SweepJob jobOf(const std::string& scene, const std::string& text, const s
   return tasks::sceneSweep({scene, tasks::parseJson(text, scene)}, text, sweep);
 }
 
-// Cases of a sweep: all, or those in `only`. `text`: of the scene; empty: that of the file or built-in scene `scene`. With `out` every finished case
-// is kept there at once.
+// Cases of a sweep: all, or those in `only`. `text`: of the scene; empty: that of the file or built-in scene `scene`.
+// With `out` every finished case is kept there at once.
 py::dict runSweep(const std::string& scene, const std::string& text, const std::vector<std::string>& paths,
                   const std::vector<std::vector<double>>& points, const std::vector<std::string>& measures,
                   const std::vector<std::size_t>& only, int threads, const std::string& out, bool resume) {
@@ -163,8 +163,9 @@ py::dict runSweep(const std::string& scene, const std::string& text, const std::
   return tableOf(job.table);
 }
 
-void writeSweep(const std::string& out, const std::string& scene, const std::string& text, const std::vector<std::string>& paths,
-                const std::vector<std::vector<double>>& points, const std::vector<std::string>& measures,
+void writeSweep(const std::string& out, const std::string& scene, const std::string& text,
+                const std::vector<std::string>& paths, const std::vector<std::vector<double>>& points,
+                const std::vector<std::string>& measures,
                 const std::vector<std::tuple<std::size_t, std::vector<double>, std::string, std::string>>& rows) {
   tasks::SweepJob job = jobOf(scene, text, paths, points, measures);
   job.table.results.resize(points.size());
@@ -177,17 +178,19 @@ void writeSweep(const std::string& out, const std::string& scene, const std::str
 void bindTables(py::module_& module) {
   module.def("read_session", &readSession, py::arg("path"), py::arg("stride"));
   module.def(
-      "read_sweep", [](const std::string& directory) { return tableOf(tasks::readSweep(directory).table); }, py::arg("directory"));
+      "read_sweep", [](const std::string& directory) { return tableOf(tasks::readSweep(directory).table); },
+      py::arg("directory"));
   module.def(
       "values_of", [](const std::string& vary) { return tasks::parseVariation("x=" + vary).values; }, py::arg("vary"));
-  module.def("run_sweep", &runSweep, py::arg("scene"), py::arg("text"), py::arg("paths"), py::arg("points"), py::arg("measures"),
-             py::arg("only"), py::arg("threads"), py::arg("out"), py::arg("resume"));
-  module.def("sweep_table", [](const std::string& scene, const std::string& text, const std::vector<std::string>& paths,
-                               const std::vector<std::vector<double>>& points, const std::vector<std::string>& measures) {
-    return tableOf(jobOf(scene, text, paths, points, measures).table);
-  });
-  module.def("write_sweep", &writeSweep, py::arg("out"), py::arg("scene"), py::arg("text"), py::arg("paths"), py::arg("points"),
-             py::arg("measures"), py::arg("rows"));
+  module.def("run_sweep", &runSweep, py::arg("scene"), py::arg("text"), py::arg("paths"), py::arg("points"),
+             py::arg("measures"), py::arg("only"), py::arg("threads"), py::arg("out"), py::arg("resume"));
+  module.def("sweep_table",
+             [](const std::string& scene, const std::string& text, const std::vector<std::string>& paths,
+                const std::vector<std::vector<double>>& points, const std::vector<std::string>& measures) {
+               return tableOf(jobOf(scene, text, paths, points, measures).table);
+             });
+  module.def("write_sweep", &writeSweep, py::arg("out"), py::arg("scene"), py::arg("text"), py::arg("paths"),
+             py::arg("points"), py::arg("measures"), py::arg("rows"));
 }
 
 }  // namespace pincer::python

@@ -13,7 +13,8 @@ namespace pincer::python {
 
 namespace py = pybind11;
 
-inline py::array_t<double> viewOf(double* data, std::vector<py::ssize_t> shape, const py::handle& owner, bool writeable) {
+inline py::array_t<double> viewOf(double* data, std::vector<py::ssize_t> shape, const py::handle& owner,
+                                  bool writeable) {
   py::array_t<double> view(std::move(shape), data, owner);
   if (!writeable) py::detail::array_proxy(view.ptr())->flags &= ~py::detail::npy_api::NPY_ARRAY_WRITEABLE_;
   return view;
@@ -32,7 +33,8 @@ inline std::vector<double> numbersOf(const py::object& value, py::ssize_t size, 
   return {array.data(), array.data() + size};
 }
 
-// True once the user has pressed Ctrl-C; the exception is Python's then. For work that has let go of the interpreter lock.
+// True once the user has pressed Ctrl-C; the exception is Python's then. For work
+// that has let go of the interpreter lock.
 inline bool interruptedByUser() {
   const py::gil_scoped_acquire gil;
   return PyErr_CheckSignals() != 0;

@@ -16,7 +16,8 @@ bool isNumber(std::string_view text) {
 
 std::string spreadsheetText(std::string_view text) {
   constexpr std::string_view kBeginFormulas = "=+-@\t\r", kKept = "'";
-  const bool guarded = !text.empty() && (text.starts_with(kKept) || (kBeginFormulas.find(text[0]) != text.npos && !isNumber(text)));
+  const bool guarded =
+      !text.empty() && (text.starts_with(kKept) || (kBeginFormulas.find(text[0]) != text.npos && !isNumber(text)));
   return fmt::format("{}{}", guarded ? kKept : "", text);
 }
 

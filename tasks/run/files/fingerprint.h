@@ -1,5 +1,5 @@
-// fingerprint: 64 bits over texts, to tell whether two are the same; no protection against who wants them to look the same.
-// Source: G. Fowler, L. C. Noll, P. Vo, FNV-1a (RFC draft draft-eastlake-fnv), 64 bits.
+// fingerprint: 64 bits over texts, to tell whether two are the same; no protection against who wants them to look the
+// same. Source: G. Fowler, L. C. Noll, P. Vo, FNV-1a (RFC draft draft-eastlake-fnv), 64 bits.
 #pragma once
 #include <fmt/format.h>
 

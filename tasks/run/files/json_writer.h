@@ -1,5 +1,5 @@
-// json_writer: JSON for machines (`--json`), written in order, numbers with the fewest digits that read back to the same bits, NaN and
-// infinity as null.
+// json_writer: JSON for machines (`--json`), written in order, numbers with the fewest digits that read back to
+// the same bits, NaN and infinity as null.
 //
 //   JsonWriter json;
 //   json.beginObject().key("name").value("s4").key("tick_us").value(0.9).endObject();

@@ -9,7 +9,8 @@
 
 namespace pincer::tasks {
 
-// distance(i + 1, j + 1) is that of the first i letters of `a` and the first j of `b`; row and column 0 are out of reach.
+// distance(i + 1, j + 1) is that of the first i letters of `a` and the first j
+// of `b`; row and column 0 are out of reach.
 int editDistance(std::string_view a, std::string_view b) {
   const std::size_t columns = b.size() + 2;
   std::vector<int> table((a.size() + 2) * columns, static_cast<int>(a.size() + b.size()));
@@ -24,21 +25,24 @@ int editDistance(std::string_view a, std::string_view b) {
       const bool same = a[i - 1] == b[j - 1];
       if (same) last_in_b = j;
       const int swapped = distance(k, l) + static_cast<int>((i - k - 1) + 1 + (j - l - 1));
-      distance(i + 1, j + 1) = std::min({distance(i, j) + (same ? 0 : 1), distance(i + 1, j) + 1, distance(i, j + 1) + 1, swapped});
+      distance(i + 1, j + 1) =
+          std::min({distance(i, j) + (same ? 0 : 1), distance(i + 1, j) + 1, distance(i, j + 1) + 1, swapped});
     }
     last_in_a[static_cast<unsigned char>(a[i - 1])] = i;
   }
   return distance(a.size() + 1, b.size() + 1);
 }
 
-constexpr std::size_t kLongestWord = 64;  // a longer one is no slip of the hand, and the table of distances grows with its square
+// a longer one is no slip of the hand, and the table of distances grows with its square
+constexpr std::size_t kLongestWord = 64;
 
 std::string_view closestWord(std::string_view word, std::span<const std::string_view> candidates) {
   int best = std::clamp(static_cast<int>(word.size()) / 3, 1, 3) + 1;
   std::string_view closest;
   for (const std::string_view candidate : candidates) {
     const std::size_t apart = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
-    if (apart >= static_cast<std::size_t>(best) || word.size() > kLongestWord) continue;  // the distance is at least this
+    // the distance is at least this
+    if (apart >= static_cast<std::size_t>(best) || word.size() > kLongestWord) continue;
     const int distance = editDistance(word, candidate);
     if (distance < best) {
       best = distance;
@@ -53,7 +57,8 @@ std::string suggestion(std::string_view word, std::span<const std::string_view> 
   if (!closest.empty()) return fmt::format(" Did you mean \"{}\"?", closest);
   constexpr std::size_t kMost = 30;  // names in a scene may be thousands
   const auto shown = candidates.first(std::min(kMost, candidates.size()));
-  const std::string more = shown.size() < candidates.size() ? fmt::format(" and {} more", candidates.size() - shown.size()) : "";
+  const std::string more =
+      shown.size() < candidates.size() ? fmt::format(" and {} more", candidates.size() - shown.size()) : "";
   return fmt::format(" Known here: {}{}.", fmt::join(shown, ", "), more);
 }
 

@@ -11,15 +11,17 @@
 namespace pincer::tasks {
 namespace {
 
-std::string withSpace(std::string_view sentence) { return sentence.empty() ? std::string() : fmt::format(" {}", sentence); }
+std::string withSpace(std::string_view sentence) {
+  return sentence.empty() ? std::string() : fmt::format(" {}", sentence);
+}
 
 }  // namespace
 
 std::string rangeText(const NumberRule& rule) {
   const bool unbounded = std::isinf(rule.max);
   const bool unbounded_below = std::isinf(rule.min);
-  return fmt::format("{}{}{}, {}{}", rule.or_zero ? "0 or " : "", rule.min_open || unbounded_below ? '(' : '[', rule.min, rule.max,
-                     unbounded ? ')' : ']');
+  return fmt::format("{}{}{}, {}{}", rule.or_zero ? "0 or " : "", rule.min_open || unbounded_below ? '(' : '[',
+                     rule.min, rule.max, unbounded ? ')' : ']');
 }
 
 bool isWithin(double value, const NumberRule& rule) {
@@ -27,7 +29,9 @@ bool isWithin(double value, const NumberRule& rule) {
   return (rule.min_open ? value > rule.min : value >= rule.min) && value <= rule.max;
 }
 
-std::string outOfRange(const NumberRule& rule) { return fmt::format("is out of range {}.{}", rangeText(rule), withSpace(rule.remedy)); }
+std::string outOfRange(const NumberRule& rule) {
+  return fmt::format("is out of range {}.{}", rangeText(rule), withSpace(rule.remedy));
+}
 
 bool JsonValue::boolean() const {
   require(Kind::kBoolean, "true or false");
@@ -91,7 +95,8 @@ void JsonValue::allowOnly(std::span<const std::string_view> keys) const {
   require(Kind::kObject, "an object in braces");
   for (std::size_t i = 0; i < keys_.size(); ++i) {
     if (std::find(keys.begin(), keys.end(), keys_[i]) != keys.end()) continue;
-    throw InputError(fmt::format("{}: {} isn't a known key.{}", items_[i].place(), items_[i].path_, suggestion(keys_[i], keys)));
+    throw InputError(
+        fmt::format("{}: {} isn't a known key.{}", items_[i].place(), items_[i].path_, suggestion(keys_[i], keys)));
   }
 }
 

@@ -1,6 +1,8 @@
-// strict_json: a JSON file (comments allowed) read so that every mistake in it is named: file, line, path, value, range, remedy.
+// strict_json: a JSON file (comments allowed) read so that every mistake in it is
+// named: file, line, path, value, range, remedy.
 //
-//   scenes/pickup.json:14: bodies[0].material.mu_s = -0.3 is out of range [0, inf). A friction coefficient can't be negative; ...
+//   scenes/pickup.json:14: bodies[0].material.mu_s = -0.3 is out of range [0, inf). A
+//   friction coefficient can't be negative; ...
 //
 // Duplicate keys are errors. A number is finite; "NaN" and numbers beyond the range of doubles don't parse.
 #pragma once
@@ -83,8 +85,8 @@ class JsonValue {
   std::shared_ptr<const std::string> file_;
 };
 
-// Reads the file at `path`, or parses `content` with `name` standing for the file in messages. Throws InputError. Values, keys and paths of the
-// file stand in messages as printable() shows them, cut.
+// Reads the file at `path`, or parses `content` with `name` standing for the file in messages. Throws InputError.
+// Values, keys and paths of the file stand in messages as printable() shows them, cut.
 JsonValue readJson(const std::string& path, const InputKind& kind);
 JsonValue parseJson(std::string_view content, const std::string& name);
 

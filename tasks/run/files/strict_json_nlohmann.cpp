@@ -1,5 +1,5 @@
-// The parser behind strict_json: nlohmann's, listened to event by event, because its own tree forgets the lines and keeps the last of two
-// equal keys.
+// The parser behind strict_json: nlohmann's, listened to event by event, because its own tree forgets the
+// lines and keeps the last of two equal keys.
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -14,8 +14,8 @@
 namespace pincer::tasks {
 namespace {
 
-// The line of the last character that the parser took and that isn't blank: the line on which the current token ends. (A number is only
-// known to have ended once the character after it was taken; that one may be a line break.)
+// The line of the last character that the parser took and that isn't blank: the line on which the current token ends.
+// (A number is only known to have ended once the character after it was taken; that one may be a line break.)
 struct Cursor {
   int line = 1;
   int token_line = 1;
@@ -72,7 +72,8 @@ class JsonTreeBuilder {
   using string_t = nlohmann::json::string_t;
   using binary_t = nlohmann::json::binary_t;
 
-  JsonTreeBuilder(const std::string& file, const Cursor& cursor) : file_(std::make_shared<const std::string>(file)), cursor_(cursor) {}
+  JsonTreeBuilder(const std::string& file, const Cursor& cursor)
+      : file_(std::make_shared<const std::string>(file)), cursor_(cursor) {}
 
   JsonValue takeRoot() { return std::move(root_); }
 
@@ -89,7 +90,8 @@ class JsonTreeBuilder {
   bool end_array() { return close(); }
 
   bool key(string_t& name) {
-    if (!keys_.back().insert(name).second) fail(fmt::format("the key \"{}\" is there twice. Remove one of them.", printable(name)));
+    if (!keys_.back().insert(name).second)
+      fail(fmt::format("the key \"{}\" is there twice. Remove one of them.", printable(name)));
     open_.back()->keys_.push_back(name);
     return true;
   }
@@ -107,8 +109,9 @@ class JsonTreeBuilder {
 
   JsonValue& add(JsonValue::Kind kind) {
     if (++count_ > kMostJsonValues) {
-      fail(fmt::format("there are more than {} values. Long lists go into files of their own: trajectories (CSV), meshes.",
-                       kMostJsonValues));
+      fail(fmt::format(
+          "there are more than {} values. Long lists go into files of their own: trajectories (CSV), meshes.",
+          kMostJsonValues));
     }
     JsonValue& value = open_.empty() ? root_ : open_.back()->items_.emplace_back();
     value.kind_ = kind;
@@ -140,7 +143,8 @@ class JsonTreeBuilder {
     return true;
   }
 
-  // Of the value that was just appended to `parent`. Every value has its path, so a file of long keys must not make long ones.
+  // Of the value that was just appended to `parent`. Every value has its path, so a
+  // file of long keys must not make long ones.
   static std::string pathInside(const JsonValue& parent) {
     constexpr std::size_t kLongestKey = 40, kLongestPath = 160;
     const std::string& before = parent.path_;
@@ -164,8 +168,8 @@ JsonValue parseJson(std::string_view content, const std::string& name) {
   const char* begin = content.data();
   constexpr bool kWholeInput = true;
   constexpr bool kComments = true;
-  nlohmann::json::sax_parse(CountingIterator(begin, &cursor), CountingIterator(begin + content.size(), &cursor), &builder,
-                            nlohmann::json::input_format_t::json, kWholeInput, kComments);
+  nlohmann::json::sax_parse(CountingIterator(begin, &cursor), CountingIterator(begin + content.size(), &cursor),
+                            &builder, nlohmann::json::input_format_t::json, kWholeInput, kComments);
   return builder.takeRoot();
 }
 

@@ -1,9 +1,11 @@
-// measurement: what `pincer verify`, `pincer stress` and `pincer bench GROUP` are made of: named measurements, each giving records.
+// measurement: what `pincer verify`, `pincer stress` and `pincer bench GROUP` are made of:
+// named measurements, each giving records.
 //
-// A command builds its list as a plain vector, in the order in which a person should read it, and hands it to runMeasurements
-// (tasks/app/commands/measure_command.h):
+// A command builds its list as a plain vector, in the order in which a person should read it, and hands it to
+// runMeasurements (tasks/app/commands/measure_command.h):
 //
-//   {{"scene/s4_pinch", [](MeasureContext& c) { return std::vector{atMost("slip in 60 s", slip(c), "um", 1e-6)}; }}, ...}
+//   {{"scene/s4_pinch", [](MeasureContext& c) { return std::vector{atMost("slip
+//   in 60 s", slip(c), "um", 1e-6)}; }}, ...}
 #pragma once
 #include <functional>
 #include <string>
@@ -13,8 +15,8 @@
 
 namespace pincer::tasks {
 
-// A running measurement's line to its caller. A long one calls progress() now and then (it costs a reading of the clock) and returns soon
-// after interrupted() turned true; what it returns then isn't shown.
+// A running measurement's line to its caller. A long one calls progress() now and then (it costs a reading of the
+// clock) and returns soon after interrupted() turned true; what it returns then isn't shown.
 struct MeasureContext {
   std::function<void(double share)> progress = [](double) {};  // done of this measurement, 0 to 1
   std::function<bool()> interrupted = [] { return false; };

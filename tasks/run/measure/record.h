@@ -2,8 +2,9 @@
 //
 //   ok = value relation bound,   false wherever the value is NaN
 //
-// `value` and `bound` are in `unit`, which a person reads (um, ns, degrees): these are results, not quantities that a computation goes on with.
-// A figure without a promise (a peer's, a baseline) has the relation <= and the bound infinity.
+// `value` and `bound` are in `unit`, which a person reads (um, ns, degrees): these are results,
+// not quantities that a computation goes on with. A figure without a promise (a peer's, a
+// baseline) has the relation <= and the bound infinity.
 #pragma once
 #include <limits>
 #include <string>
@@ -25,7 +26,7 @@ struct Record {
 Record atMost(std::string metric, double value, std::string unit, double bound);
 Record atLeast(std::string metric, double value, std::string unit, double bound);
 Record exactly(std::string metric, double value, std::string unit, double bound);  // equal to the last bit: counts
-Record unbounded(std::string metric, double value, std::string unit);              // shown, promised nothing; ok unless NaN
+Record unbounded(std::string metric, double value, std::string unit);  // shown, promised nothing; ok unless NaN
 
 bool allOk(const std::vector<Record>& records);
 

@@ -46,7 +46,9 @@ double quantileOf(std::vector<double> values, double q) {
 double threadCpuSeconds() { return secondsBy(CLOCK_THREAD_CPUTIME_ID); }
 double processCpuSeconds() { return secondsBy(CLOCK_PROCESS_CPUTIME_ID); }
 
-double steadySeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double steadySeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 CallCost costOfCalls(const std::function<void(std::int64_t i)>& work, const TimingBudget& budget) {
   std::int64_t i = 0;
@@ -67,8 +69,8 @@ CallCost costOfCalls(const std::function<void(std::int64_t i)>& work, const Timi
   return {quantileOf(batches, 0.5), quantileOf(singles, 0.999), quantileOf(singles, 1)};
 }
 
-double tailOfWalk(const std::function<void()>& begin, const std::function<void(std::int64_t i)>& work, std::int64_t calls, double q,
-                  int walks) {
+double tailOfWalk(const std::function<void()>& begin, const std::function<void(std::int64_t i)>& work,
+                  std::int64_t calls, double q, int walks) {
   const double reading = costOfReadingTheClock();
   std::vector<double> least(static_cast<std::size_t>(calls), std::numeric_limits<double>::infinity());
   for (int k = 0; k < walks; ++k) {

@@ -1,8 +1,9 @@
 // timing: what a call costs, on a machine that does other things too.
 //
-// Cost: the median over batches of (thread's CPU time of a batch) / (calls in it), after a warm-up; CPU time doesn't count what others use.
-// Tail: the q-th smallest of single calls by the steady clock, less the median cost of reading that clock; whatever interrupts the process
-// is in it. Ratio of two: batches of one and the other by turns, median of the pairs' ratios, so that a slow spell hits both.
+// Cost: the median over batches of (thread's CPU time of a batch) / (calls in it), after a warm-up; CPU time doesn't
+// count what others use. Tail: the q-th smallest of single calls by the steady clock, less the median cost of reading
+// that clock; whatever interrupts the process is in it. Ratio of two: batches of one and the other by turns, median of
+// the pairs' ratios, so that a slow spell hits both.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -33,10 +34,10 @@ struct TimingBudget {
 // `work(i)` does one call, i = 0, 1, 2, ... without end: paths are walked, not repeated in place.
 CallCost costOfCalls(const std::function<void(std::int64_t i)>& work, const TimingBudget& budget = {});
 
-// The q-th smallest cost of a walk's calls [ns], each the least of several walks: a call does the same in all of them, what interrupts it
-// doesn't. `begin` puts the walk back to its start, `work(i)` does its i-th call.
-double tailOfWalk(const std::function<void()>& begin, const std::function<void(std::int64_t i)>& work, std::int64_t calls, double q = 0.999,
-                  int walks = 7);
+// The q-th smallest cost of a walk's calls [ns], each the least of several walks: a call does the same in all of them,
+// what interrupts it doesn't. `begin` puts the walk back to its start, `work(i)` does its i-th call.
+double tailOfWalk(const std::function<void()>& begin, const std::function<void(std::int64_t i)>& work,
+                  std::int64_t calls, double q = 0.999, int walks = 7);
 
 // Cost of `a` over cost of `b`, each a batch of work [-].
 double ratioOfCosts(const std::function<void()>& a, const std::function<void()>& b, int rounds = 11);

@@ -89,7 +89,8 @@ pid_t spawn(std::vector<std::string>& arguments, const SpawnActions& actions, st
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   pid_t child = 0;
-  must(posix_spawnp(&child, argv[0], actions.get(), attributes.get(), argv.data(), environmentWithout(kept_from_it).data()));
+  must(posix_spawnp(&child, argv[0], actions.get(), attributes.get(), argv.data(),
+                    environmentWithout(kept_from_it).data()));
   return child;
 }
 
@@ -111,7 +112,8 @@ class Pipe {
 
 }  // namespace
 
-ChildProcess::ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log, std::string_view kept_from_it)
+ChildProcess::ChildProcess(std::vector<std::string> arguments, const std::string& directory, const char* log,
+                           std::string_view kept_from_it)
     : child_(spawn(arguments, SpawnActions(directory, log), kept_from_it)) {}
 
 ChildProcess::ChildProcess(std::vector<std::string> arguments) {

@@ -1,5 +1,5 @@
-// interrupted: how long work ends early. A signal sets a flag (tasks/app/interrupt.h); what works for long looks at it and throws; on the way out
-// destructors remove what isn't whole. What is whole stays.
+// interrupted: how long work ends early. A signal sets a flag (tasks/app/interrupt.h); what works for long looks at it
+// and throws; on the way out destructors remove what isn't whole. What is whole stays.
 #pragma once
 #include <atomic>
 #include <exception>

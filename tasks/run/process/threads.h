@@ -7,8 +7,8 @@
 
 namespace pincer::tasks {
 
-// Calls `work` on up to `threads` >= 1 threads at once, this one included, and returns when all have returned. Where the system gives no more
-// (memory, or its limit of threads), fewer do the work. `work` keeps its exceptions to itself.
+// Calls `work` on up to `threads` >= 1 threads at once, this one included, and returns when all have returned. Where
+// the system gives no more (memory, or its limit of threads), fewer do the work. `work` keeps its exceptions to itself.
 template <class Work>
 void onThreads(int threads, const Work& work) {
   std::vector<std::thread> others;

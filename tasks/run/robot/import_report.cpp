@@ -47,7 +47,8 @@ void writeBody(const RobotBody& body, const Pose& X_WB, JsonWriter& json) {
 void writeJoints(const Robot& robot, JsonWriter& json) {
   json.key("joints").beginArray();
   for (const RobotBody& body : robot.bodies) {
-    for (const RobotJoint& joint : body.joints) json.beginObject().key("name").value(joint.name).key("body").value(body.name).endObject();
+    for (const RobotJoint& joint : body.joints)
+      json.beginObject().key("name").value(joint.name).key("body").value(body.name).endObject();
   }
   json.endArray().key("drives").beginArray();
   for (const RobotDrive& drive : robot.drives) json.value(drive.name);
@@ -73,13 +74,14 @@ void writeKeyframes(const Robot& robot, JsonWriter& json) {
 std::string importText(const RobotImport& import) {
   const Robot& robot = import.robot;
   std::string text = fmt::format(
-      "{}: {}, {:.4g} kg, {}, {}, {}, {}.\n", printable(robot.name), counted(robot.bodies.size(), "body", "bodies"), massOf(robot),
-      counted(jointCount(robot), "joint", "joints"), counted(robot.couplings.size(), "coupling", "couplings"),
-      counted(robot.drives.size(), "drive", "drives"), counted(touchingGeoms(robot), "shape that touches", "shapes that touch"));
+      "{}: {}, {:.4g} kg, {}, {}, {}, {}.\n", printable(robot.name), counted(robot.bodies.size(), "body", "bodies"),
+      massOf(robot), counted(jointCount(robot), "joint", "joints"),
+      counted(robot.couplings.size(), "coupling", "couplings"), counted(robot.drives.size(), "drive", "drives"),
+      counted(touchingGeoms(robot), "shape that touches", "shapes that touch"));
   if (!import.notes.all().empty()) text += "Without effect here:\n";
   for (const ImportNote& note : import.notes.all()) {
-    text += fmt::format("  {:<28} {:>4} x, first at {}{}{}\n", note.what, note.count, printable(note.place), note.why.empty() ? "" : ". ",
-                        note.why);
+    text += fmt::format("  {:<28} {:>4} x, first at {}{}{}\n", note.what, note.count, printable(note.place),
+                        note.why.empty() ? "" : ". ", note.why);
   }
   return text;
 }

@@ -15,7 +15,8 @@ void readFlags(const XmlElement& element, Robot& robot) {
   constexpr std::string_view kNeeded[] = {"constraint", "equality", "frictionloss", "limit",    "contact",
                                           "spring",     "damper",   "clampctrl",    "actuation"};
   for (const std::string_view name : kNeeded) {
-    if (values.oneOf(name, kWords, 1) == 0) values.reject(name, "can't be switched off as a whole here: leave out the parts themselves.");
+    if (values.oneOf(name, kWords, 1) == 0)
+      values.reject(name, "can't be switched off as a whole here: leave out the parts themselves.");
   }
   if (values.oneOf("gravity", kWords, 1) == 0) robot.gravity_W.setZero();
 }

@@ -1,7 +1,8 @@
 // mjcf: reads a robot from an MJCF file, the format of MuJoCo's models.
 //
-// Entries of the format that pincer has no use for are counted in the notes (soft contact, solver settings, sensors); what would change the robot
-// and isn't known here is refused by name, file and line (mjcf_grammar.h is the list). docs/robots.md has all of it in words.
+// Entries of the format that pincer has no use for are counted in the notes (soft contact, solver settings,
+// sensors); what would change the robot and isn't known here is refused by name, file and line (mjcf_grammar.h is
+// the list). docs/robots.md has all of it in words.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct RobotImport {
   ImportNotes notes;
 };
 
-// Files that it names lie in its folder or below, or in one of `allowed_folders`. Throws InputError: file, line, element, problem, remedy.
+// Files that it names lie in its folder or below, or in one of `allowed_folders`. Throws
+// InputError: file, line, element, problem, remedy.
 RobotImport readMjcf(const std::string& path, const std::vector<std::string>& allowed_folders = {});
 
 }  // namespace pincer::tasks

@@ -2,8 +2,8 @@
 //
 //   force = gear (gain u + bias_0 + bias_1 l + bias_2 l'),   l = gear times the coordinate
 //
-// motor: gain 1. position: gain kp, bias_1 = -kp, bias_2 = -kv. velocity: gain kv, bias_2 = -kv. A class has one default for all of them: each
-// element of it, then the actuator itself, changes what those before it have made.
+// motor: gain 1. position: gain kp, bias_1 = -kp, bias_2 = -kv. velocity: gain kv, bias_2 = -kv. A class has one
+// default for all of them: each element of it, then the actuator itself, changes what those before it have made.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -84,7 +84,8 @@ std::vector<const XmlElement*> layersOf(const Reading& reading, const XmlElement
   std::vector<const XmlElement*> layers = {&element};
   const std::string* name = element.find("class");
   const auto& classes = reading.document.classes;
-  for (int c = name ? classNamed(reading.document, *name, element) : 0; c >= 0; c = classes[static_cast<std::size_t>(c)].parent) {
+  for (int c = name ? classNamed(reading.document, *name, element) : 0; c >= 0;
+       c = classes[static_cast<std::size_t>(c)].parent) {
     const auto defaults = classes[static_cast<std::size_t>(c)].elements.find("actuator");
     if (defaults == classes[static_cast<std::size_t>(c)].elements.end()) continue;
     for (auto e = defaults->second.rbegin(); e != defaults->second.rend(); ++e) layers.push_back(&*e);
@@ -103,7 +104,8 @@ std::string tendonNamed(const Reading& reading, const Values& values) {
 }
 
 void connect(const Reading& reading, const Values& values, RobotDrive& drive) {
-  if (values.has("joint") == values.has("tendon")) values.element().reject("needs either a joint or a tendon to drive.");
+  if (values.has("joint") == values.has("tendon"))
+    values.element().reject("needs either a joint or a tendon to drive.");
   if (values.has("tendon")) {
     drive.tendon = tendonNamed(reading, values);
     return;
@@ -117,7 +119,8 @@ void connect(const Reading& reading, const Values& values, RobotDrive& drive) {
 // About the middle of the joint's range, so many times as wide.
 Vec2 inheritedRange(const Reading& reading, const Values& values, const Draft& draft) {
   const auto at = reading.joints.find(draft.drive.joint);
-  if (at == reading.joints.end() || !at->second->limits) values.reject("inheritrange", "needs a joint that has limits.");
+  if (at == reading.joints.end() || !at->second->limits)
+    values.reject("inheritrange", "needs a joint that has limits.");
   const Vec2 ends = *at->second->limits;
   const double middle = 0.5 * ends.sum(), half = 0.5 * draft.inherit_range * (ends[1] - ends[0]);
   return {middle - half, middle + half};
@@ -129,7 +132,8 @@ RobotDrive readDrive(const Reading& reading, const XmlElement& element) {
   const Values values(reading.document, element, "actuator", 0);
   RobotDrive& drive = draft.drive;
   drive.place = element.place();
-  drive.name = values.element().find("name") ? values.text("name") : fmt::format("drive{}", reading.robot.drives.size());
+  drive.name =
+      values.element().find("name") ? values.text("name") : fmt::format("drive{}", reading.robot.drives.size());
   connect(reading, values, drive);
   if (!draft.has_bias) drive.bias.setZero();
   drive.controls = values.limits("ctrlrange", "ctrllimited", reading.compiler().autolimits);

@@ -12,7 +12,8 @@
 namespace pincer::tasks::mjcf {
 namespace {
 
-// Where an element stands: its body, the pose of the innermost frame in the body's, and the class of those that name none.
+// Where an element stands: its body, the pose of the innermost frame in the
+// body's, and the class of those that name none.
 struct Surroundings {
   int body = -1;
   Pose X_BR;
@@ -32,7 +33,8 @@ class BodyReader {
     if (child.tag == "body") readBody(child, around);
     if (child.tag == "frame") readFrame(child, around);
     if (child.tag == "joint")
-      addJoint(child, around, readJoint(reading_, Values(reading_.document, child, "joint", around.class_index), around.X_BR));
+      addJoint(child, around,
+               readJoint(reading_, Values(reading_.document, child, "joint", around.class_index), around.X_BR));
     if (child.tag == "freejoint") addJoint(child, around, freeJoint(child));
     if (child.tag == "geom") readGeomOf(child, around);
     if (child.tag == "site") readSite(child, around);
@@ -55,7 +57,8 @@ class BodyReader {
     body.is_driven = values.boolean("mocap", false);
     body.gravity_compensation = values.number("gravcomp", 0);
     if (body.is_driven && around.body >= 0) values.reject("mocap", "goes with bodies of the world only.");
-    if (!reading_.bodies.emplace(body.name, index).second) element.reject(fmt::format("is the second body called \"{}\".", body.name));
+    if (!reading_.bodies.emplace(body.name, index).second)
+      element.reject(fmt::format("is the second body called \"{}\".", body.name));
     given_.push_back(false);
     own_.emplace_back();
     readChildren(element, {index, {}, classWithin(element, around.class_index)});
@@ -84,7 +87,8 @@ class BodyReader {
       element.reject("limits a ball joint, which isn't known here. Make it of three hinges, or leave the range out.");
     if (body.is_driven) element.reject("holds a mocap body, which goes where it is told.");
     if (joint.name.empty())
-      joint.name = body.joints.empty() ? body.name + "_joint" : fmt::format("{}_joint{}", body.name, body.joints.size());
+      joint.name =
+          body.joints.empty() ? body.name + "_joint" : fmt::format("{}_joint{}", body.name, body.joints.size());
     body.joints.push_back(std::move(joint));
   }
 
@@ -133,7 +137,8 @@ class BodyReader {
   // Where inertial says nothing, the sum of the geoms'.
   void finishMass(int index) {
     RobotBody& body = robot_.bodies[static_cast<std::size_t>(index)];
-    if (!given_[static_cast<std::size_t>(index)] && reading_.compiler().inertia_from_geoms != InertiaFromGeoms::kNever) {
+    if (!given_[static_cast<std::size_t>(index)] &&
+        reading_.compiler().inertia_from_geoms != InertiaFromGeoms::kNever) {
       std::vector<engine::MassProperties> parts;
       for (const RobotGeom& geom : own_[static_cast<std::size_t>(index)]) {
         if (geom.mass > 0) parts.push_back(geomMass(geom, robot_.meshes));
@@ -181,7 +186,8 @@ void nameJoints(Reading& reading) {
     for (const RobotJoint& joint : body.joints) {
       coordinates += joint.kind == RobotJointKind::kFree ? 7 : joint.kind == RobotJointKind::kBall ? 4 : 1;
       if (!reading.joints.emplace(joint.name, &joint).second)
-        throw InputError(printableMessage(fmt::format("{}: <joint> is the second joint called \"{}\".", joint.place, joint.name)));
+        throw InputError(
+            printableMessage(fmt::format("{}: <joint> is the second joint called \"{}\".", joint.place, joint.name)));
     }
   }
   reading.coordinates.push_back(coordinates);

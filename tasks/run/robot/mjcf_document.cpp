@@ -44,8 +44,10 @@ class Includer {
     const std::string path = folder_.find(include, "", *name);
     if (std::find(open_.begin(), open_.end(), real(path)) != open_.end())
       include.reject(fmt::format("includes {}, which includes this one. Take one of the two out.", *name));
-    if (!seen_.insert(real(path)).second) include.reject(fmt::format("includes {} a second time. MJCF allows one.", *name));
-    if (seen_.size() > kMostIncludes) include.reject(fmt::format("is one include too many: a robot has at most {}.", kMostIncludes));
+    if (!seen_.insert(real(path)).second)
+      include.reject(fmt::format("includes {} a second time. MJCF allows one.", *name));
+    if (seen_.size() > kMostIncludes)
+      include.reject(fmt::format("is one include too many: a robot has at most {}.", kMostIncludes));
     XmlElement root = readXml(path);
     open_.push_back(real(path));
     expand(root);
@@ -73,10 +75,11 @@ class Checker {
     for (const XmlAttribute& attribute : element.attributes) {
       Verdict verdict;
       if (!findAttribute(row, attribute.name, verdict)) {
-        element.reject(
-            fmt::format("has the attribute \"{}\", which MJCF doesn't know there.{}", attribute.name, spelling(row, attribute.name)));
+        element.reject(fmt::format("has the attribute \"{}\", which MJCF doesn't know there.{}", attribute.name,
+                                   spelling(row, attribute.name)));
       }
-      if (verdict == Verdict::kIgnored) notes_.add(fmt::format("{} {}", element.tag, attribute.name), "", element.place());
+      if (verdict == Verdict::kIgnored)
+        notes_.add(fmt::format("{} {}", element.tag, attribute.name), "", element.place());
       if (verdict == Verdict::kRefused)
         element.reject(fmt::format("has the attribute \"{}\", which isn't taken. {}", attribute.name, row.reason));
     }
@@ -120,10 +123,12 @@ void readCompilerElement(const XmlElement& element, Compiler& c) {
   c.euler_order = values.text("eulerseq", c.euler_order);
   const bool is_order = c.euler_order.size() == 3 && c.euler_order.find_first_not_of("xyzXYZ") == std::string::npos;
   if (!is_order)
-    element.reject(fmt::format("has eulerseq=\"{}\". Three of x, y, z; capital letters turn about fixed axes.", c.euler_order));
+    element.reject(
+        fmt::format("has eulerseq=\"{}\". Three of x, y, z; capital letters turn about fixed axes.", c.euler_order));
   c.mesh_folder = values.text("meshdir", values.text("assetdir", c.mesh_folder));
   constexpr std::string_view kFromGeoms[] = {"false", "true", "auto"};
-  c.inertia_from_geoms = static_cast<InertiaFromGeoms>(values.oneOf("inertiafromgeom", kFromGeoms, static_cast<int>(c.inertia_from_geoms)));
+  c.inertia_from_geoms = static_cast<InertiaFromGeoms>(
+      values.oneOf("inertiafromgeom", kFromGeoms, static_cast<int>(c.inertia_from_geoms)));
   const std::vector<double> groups = values.numbers("inertiagrouprange", 2, 2);
   if (!groups.empty()) {
     c.first_inertia_group = static_cast<int>(groups[0]);
@@ -163,9 +168,11 @@ class ClassReader {
       if (name) classes_[0].name = *name;
       return 0;
     }
-    if (!name || name->empty()) element.reject("needs the attribute \"class\": only the outermost one may go without a name.");
+    if (!name || name->empty())
+      element.reject("needs the attribute \"class\": only the outermost one may go without a name.");
     const auto same = [&](const DefaultClass& c) { return c.name == *name; };
-    if (std::any_of(classes_.begin(), classes_.end(), same)) element.reject(fmt::format("is the second class called \"{}\".", *name));
+    if (std::any_of(classes_.begin(), classes_.end(), same))
+      element.reject(fmt::format("is the second class called \"{}\".", *name));
     classes_.push_back({*name, parent, {}});
     return static_cast<int>(classes_.size()) - 1;
   }
@@ -184,7 +191,8 @@ std::vector<const XmlElement*> sections(const Document& document, std::string_vi
 }
 
 int classNamed(const Document& document, const std::string& name, const XmlElement& element) {
-  const auto at = std::find_if(document.classes.begin(), document.classes.end(), [&](const DefaultClass& c) { return c.name == name; });
+  const auto at = std::find_if(document.classes.begin(), document.classes.end(),
+                               [&](const DefaultClass& c) { return c.name == name; });
   if (at != document.classes.end()) return static_cast<int>(at - document.classes.begin());
   std::vector<std::string_view> names;
   for (const DefaultClass& c : document.classes) names.push_back(c.name);

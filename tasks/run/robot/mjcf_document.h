@@ -1,5 +1,5 @@
-// mjcf_document: an MJCF file with its includes put in place, its classes of defaults, its compiler's settings, and every element and attribute
-// held against the grammar (mjcf_grammar.h).
+// mjcf_document: an MJCF file with its includes put in place, its classes of defaults, its compiler's settings, and
+// every element and attribute held against the grammar (mjcf_grammar.h).
 #pragma once
 #include <map>
 #include <memory>
@@ -24,7 +24,8 @@ struct Compiler {
   double least_mass = 0, least_inertia = 0, total_mass = -1;
 };
 
-// A class of defaults: for each kind of element the attributes that its elements of this class have unless they say otherwise.
+// A class of defaults: for each kind of element the attributes that its elements of
+// this class have unless they say otherwise.
 struct DefaultClass {
   std::string name;
   int parent = -1;  // whose values it inherits
@@ -41,8 +42,8 @@ struct Document {
   ImportNotes notes;
 };
 
-// Throws InputError: not XML, no element mujoco, an element or attribute that MJCF doesn't have or that is refused, an include that is missing,
-// outside of the folder or in a circle, a class of no or of two names.
+// Throws InputError: not XML, no element mujoco, an element or attribute that MJCF doesn't have or that is refused, an
+// include that is missing, outside of the folder or in a circle, a class of no or of two names.
 Document readDocument(const std::string& path, const std::vector<std::string>& allowed_folders);
 
 // The index of a class. Throws InputError at `element`, with a did-you-mean.
@@ -52,6 +53,8 @@ int classNamed(const Document& document, const std::string& name, const XmlEleme
 std::vector<const XmlElement*> sections(const Document& document, std::string_view tag);
 
 // The row of an element that stands in `parent_row`, once it was checked.
-inline std::string_view rowName(std::string_view parent_row, const XmlElement& element) { return findRow(parent_row, element.tag)->name; }
+inline std::string_view rowName(std::string_view parent_row, const XmlElement& element) {
+  return findRow(parent_row, element.tag)->name;
+}
 
 }  // namespace pincer::tasks::mjcf

@@ -27,7 +27,8 @@ void readSize(const Values& values, RobotGeom& geom, bool from_to) {
   if (count == 0) return;
   const std::vector<double> size = values.numbers("size", 1, 3);
   if (size.size() < count)
-    values.element().reject(fmt::format("of type {} needs a size of {} numbers.", kGeomTypes[static_cast<int>(geom.shape)], count));
+    values.element().reject(
+        fmt::format("of type {} needs a size of {} numbers.", kGeomTypes[static_cast<int>(geom.shape)], count));
   for (std::size_t i = 0; i < count; ++i) {
     if (!(size[i] > 0)) values.reject("size", fmt::format("has {}, and sizes are positive.", size[i]));
     geom.half[static_cast<Eigen::Index>(i)] = size[i];
@@ -70,7 +71,8 @@ void readFriction(const Values& values, RobotGeom& geom) {
   for (std::size_t i = 0; i < friction.size(); ++i) f[static_cast<Eigen::Index>(i)] = friction[i];
   if (f.minCoeff() < 0) values.reject("friction", "has a negative coefficient.");
   const int dimensions = values.whole("condim", 3);
-  if (dimensions != 1 && dimensions != 3 && dimensions != 4 && dimensions != 6) values.reject("condim", "is none of 1, 3, 4, 6.");
+  if (dimensions != 1 && dimensions != 3 && dimensions != 4 && dimensions != 6)
+    values.reject("condim", "is none of 1, 3, 4, 6.");
   geom.mu = dimensions == 1 ? 0 : f[0];
   if (geom.mu > 0 && dimensions >= 4) geom.torsion_radius = f[1] / f[0];
   if (geom.mu > 0 && dimensions == 6) geom.rolling_radius = f[2] / f[0];
@@ -80,7 +82,8 @@ void readMass(const Reading& reading, const Values& values, RobotGeom& geom) {
   if (geom.shape == RobotShape::kPlane) return;
   if (values.boolean("shellinertia", false))
     values.reject("shellinertia", "isn't known here: give the body an <inertial>, or a mesh inertia=\"shell\".");
-  geom.mass = values.has("mass") ? values.number("mass", 0) : values.number("density", kDensity) * geomVolume(geom, reading.robot.meshes);
+  geom.mass = values.has("mass") ? values.number("mass", 0)
+                                 : values.number("density", kDensity) * geomVolume(geom, reading.robot.meshes);
   if (!(geom.mass >= 0)) values.reject(values.has("mass") ? "mass" : "density", "gives a negative mass.");
 }
 
@@ -106,8 +109,8 @@ RobotGeom readGeom(Reading& reading, const Values& values, const Pose& X_BR) {
   RobotGeom geom;
   geom.place = values.element().place();
   geom.name = values.element().find("name") ? values.text("name") : "";
-  const int fallback =
-      values.has("mesh") && !values.has("type") ? static_cast<int>(RobotShape::kMesh) : static_cast<int>(RobotShape::kSphere);
+  const int fallback = values.has("mesh") && !values.has("type") ? static_cast<int>(RobotShape::kMesh)
+                                                                 : static_cast<int>(RobotShape::kSphere);
   geom.shape = static_cast<RobotShape>(values.oneOf("type", kGeomTypes, fallback));
   if (geom.shape == RobotShape::kMesh) {
     geom.mesh = meshNamed(reading, values);

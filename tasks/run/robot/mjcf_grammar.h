@@ -1,7 +1,8 @@
 // mjcf_grammar: the elements and attributes of MJCF, and for each of them what the importer does with it.
 //
-// The names are those of the grammar that MuJoCo publishes (mjcf.schema, August 2026). An element of the same tag means different things in
-// different places: rows have names of their own ("equality_joint"), found by the parent's row and the tag.
+// The names are those of the grammar that MuJoCo publishes (mjcf.schema, August 2026). An element of
+// the same tag means different things in different places: rows have names of their own
+// ("equality_joint"), found by the parent's row and the tag.
 #pragma once
 #include <span>
 #include <string_view>
@@ -21,7 +22,7 @@ struct GrammarRow {
   std::string_view parents;  // rows in which it stands
   Verdict verdict = Verdict::kRead;
   std::string_view read = {}, looks = {}, ignored = {}, refused = {};  // attributes, of a row that is read
-  std::string_view reason = {};                                        // why it, or its refused attributes, are refused; a sentence
+  std::string_view reason = {};  // why it, or its refused attributes, are refused; a sentence
 };
 
 std::span<const GrammarRow> grammar();

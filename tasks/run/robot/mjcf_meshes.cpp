@@ -26,7 +26,8 @@ contact::TriangleMesh readInline(const Values& values) {
   contact::TriangleMesh mesh;
   const std::vector<double> numbers = values.numbers("vertex", 12, kMostInlineNumbers);
   if (numbers.size() % 3 != 0) values.reject("vertex", "isn't made of threes: x y z of each corner.");
-  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) mesh.vertices.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
+    mesh.vertices.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
   if (!values.has("face")) return mesh;  // its hull is meant
   const std::vector<double> faces = values.numbers("face", 3, kMostInlineNumbers);
   if (faces.size() % 3 != 0) values.reject("face", "isn't made of threes: the corners of each triangle.");

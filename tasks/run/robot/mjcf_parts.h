@@ -13,8 +13,8 @@ namespace pincer::tasks::mjcf {
 struct Reading {
   Document& document;
   Robot& robot;
-  std::map<std::string, int, std::less<>> meshes, bodies;             // by name
-  std::map<std::string, int, std::less<>> geom_bodies;                // the body of each geom that has a name; -1: the world
+  std::map<std::string, int, std::less<>> meshes, bodies;  // by name
+  std::map<std::string, int, std::less<>> geom_bodies;     // the body of each geom that has a name; -1: the world
   std::map<std::string, const RobotJoint*, std::less<>> joints = {};  // once all bodies are there
   std::vector<int> coordinates = {};  // of a keyframe: by body, the first coordinate; the last entry counts all
 

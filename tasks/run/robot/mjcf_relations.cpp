@@ -1,4 +1,5 @@
-// contact, tendon, equality, keyframe: what ties the bodies of the tree together, keeps them apart, and where they start.
+// contact, tendon, equality, keyframe: what ties the bodies of the tree
+// together, keeps them apart, and where they start.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +25,8 @@ void readContact(Reading& reading, const XmlElement& element) {
   if (element.tag == "pair")
     element.reject("gives two geoms a contact of their own, which isn't known yet: give the geoms their friction.");
   const Values values(element);
-  reading.robot.excluded.push_back({bodyNamed(reading, values, "body1"), bodyNamed(reading, values, "body2"), element.place()});
+  reading.robot.excluded.push_back(
+      {bodyNamed(reading, values, "body1"), bodyNamed(reading, values, "body2"), element.place()});
 }
 
 // A hinge or slide: couplings and tendons go by one coordinate.

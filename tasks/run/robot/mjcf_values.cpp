@@ -19,7 +19,9 @@ constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::array<std::string_view, 5> kOrientations = {"quat", "axisangle", "xyaxes", "zaxis", "euler"};
 constexpr double kShortest = 1e-14;  // of a direction: MuJoCo's least length
 
-double radians(double angle, const Compiler& compiler) { return compiler.degrees ? angle * (std::numbers::pi / 180) : angle; }
+double radians(double angle, const Compiler& compiler) {
+  return compiler.degrees ? angle * (std::numbers::pi / 180) : angle;
+}
 
 Quat turn(const Vec3& axis, double angle) {
   const Vec3 v = math::sin(0.5 * angle) * axis;
@@ -49,7 +51,8 @@ Quat zaxisQuat(const Vec3& z) {
 
 }  // namespace
 
-Values::Values(const Document& document, const XmlElement& element, std::string_view kind, int class_index) : levels_{&element} {
+Values::Values(const Document& document, const XmlElement& element, std::string_view kind, int class_index)
+    : levels_{&element} {
   if (const std::string* name = element.find("class")) class_index = classNamed(document, *name, element);
   for (int c = class_index; c >= 0; c = document.classes[static_cast<std::size_t>(c)].parent) {
     const auto& elements = document.classes[static_cast<std::size_t>(c)].elements;
@@ -60,7 +63,8 @@ Values::Values(const Document& document, const XmlElement& element, std::string_
 }
 
 const XmlElement* Values::levelOf(std::string_view name) const {
-  const auto at = std::find_if(levels_.begin(), levels_.end(), [&](const XmlElement* e) { return e->find(name) != nullptr; });
+  const auto at =
+      std::find_if(levels_.begin(), levels_.end(), [&](const XmlElement* e) { return e->find(name) != nullptr; });
   return at == levels_.end() ? nullptr : *at;
 }
 
@@ -90,7 +94,8 @@ int Values::oneOf(std::string_view name, std::span<const std::string_view> words
   const XmlElement* level = levelOf(name);
   if (!level) return fallback;
   const auto at = std::find(words.begin(), words.end(), *level->find(name));
-  if (at == words.end()) reject(name, fmt::format("is none of the words that go there.{}", suggestion(*level->find(name), words)));
+  if (at == words.end())
+    reject(name, fmt::format("is none of the words that go there.{}", suggestion(*level->find(name), words)));
   return static_cast<int>(at - words.begin());
 }
 
@@ -110,13 +115,15 @@ std::vector<double> Values::numbers(std::string_view name, std::size_t least, st
   if (!level) return {};
   const std::string& text = *level->find(name);
   std::vector<double> values;
-  for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string::npos; at = text.find_first_not_of(kBlanks, at)) {
+  for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string::npos;
+       at = text.find_first_not_of(kBlanks, at)) {
     const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
     const std::size_t begin = text[at] == '+' ? at + 1 : at;
     double value = 0;
     const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
     const bool is_number = error == std::errc() && stop == text.data() + end && std::isfinite(value);
-    if (!is_number) reject(name, fmt::format("has \"{:.30}\", which isn't a finite number.", text.substr(at, end - at)));
+    if (!is_number)
+      reject(name, fmt::format("has \"{:.30}\", which isn't a finite number.", text.substr(at, end - at)));
     values.push_back(value);
     at = end;
   }

@@ -1,6 +1,8 @@
-// mjcf_values: the attributes of an MJCF element as what they must be: its own, or those of its class of defaults, or of that one's parents.
+// mjcf_values: the attributes of an MJCF element as what they must be: its own, or those of its
+// class of defaults, or of that one's parents.
 //
-// A class inherits its parent's values whatever their order in the file. Every error names file and line of the element that has the value.
+// A class inherits its parent's values whatever their order in the file. Every error names file
+// and line of the element that has the value.
 #pragma once
 #include <optional>
 #include <span>
@@ -27,7 +29,8 @@ class Values {
   std::string text(std::string_view name, const std::string& fallback = "") const;
   std::string required(std::string_view name) const;  // throws where it is missing or empty
   bool boolean(std::string_view name, bool fallback) const;
-  int oneOf(std::string_view name, std::span<const std::string_view> words, int fallback) const;  // the index of the word
+  // the index of the word
+  int oneOf(std::string_view name, std::span<const std::string_view> words, int fallback) const;
   double number(std::string_view name, double fallback) const;
   int whole(std::string_view name, int fallback) const;
   // Between `least` and `most` finite numbers; empty where the attribute is missing.

@@ -17,7 +17,8 @@ bool isWithin(const fs::path& file, const fs::path& folder) {
 fs::path canonicalFolder(const std::string& folder) {
   std::error_code error;
   const fs::path path = fs::canonical(folder.empty() ? "." : folder, error);
-  if (error || !fs::is_directory(path, error)) throw InputError(fmt::format("--allow {}: is no folder. Name one that exists.", folder));
+  if (error || !fs::is_directory(path, error))
+    throw InputError(fmt::format("--allow {}: is no folder. Name one that exists.", folder));
   return path;
 }
 
@@ -36,11 +37,14 @@ std::string ModelFolder::find(const XmlElement& element, const std::string& fold
   std::error_code error;
   const fs::path real = fs::canonical(path, error);
   if (error)
-    element.reject(fmt::format("names the file \"{}\", and there is no {}. Copy it there, or correct the name.", name, path.string()));
-  const bool is_allowed = std::any_of(allowed_.begin(), allowed_.end(), [&](const std::string& a) { return isWithin(real, a); });
+    element.reject(fmt::format("names the file \"{}\", and there is no {}. Copy it there, or correct the name.", name,
+                               path.string()));
+  const bool is_allowed =
+      std::any_of(allowed_.begin(), allowed_.end(), [&](const std::string& a) { return isWithin(real, a); });
   if (!is_allowed) {
-    element.reject(fmt::format("names the file \"{}\", which lies outside of the model's folder. If you trust it, give --allow {}.", name,
-                               real.parent_path().string()));
+    element.reject(fmt::format(
+        "names the file \"{}\", which lies outside of the model's folder. If you trust it, give --allow {}.", name,
+        real.parent_path().string()));
   }
   return path.lexically_normal().string();
 }

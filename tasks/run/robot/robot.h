@@ -1,7 +1,8 @@
-// robot: a robot as its file describes it: names, frames and numbers, without JSON and without an engine. mjcf.h reads one, robot_scene.h makes
-// a scene of it.
+// robot: a robot as its file describes it: names, frames and numbers, without JSON and without an engine. mjcf.h
+// reads one, robot_scene.h makes a scene of it.
 //
-// Lengths in metres, angles in radians, whatever the file's units. Frames: P of the parent body, B of the body, G of a geom.
+// Lengths in metres, angles in radians, whatever the file's units. Frames: P of the
+// parent body, B of the body, G of a geom.
 #pragma once
 #include <optional>
 #include <string>
@@ -37,8 +38,9 @@ struct RobotMesh {
 struct RobotGeom {
   std::string name;
   RobotShape shape = RobotShape::kSphere;
-  Vec3 half = Vec3::Zero();  // sphere: radius; capsule, cylinder: radius, half length along z; ellipsoid, box: half axes
-  int mesh = -1;             // of Robot::meshes
+  // sphere: radius; capsule, cylinder: radius, half length along z; ellipsoid, box: half axes
+  Vec3 half = Vec3::Zero();
+  int mesh = -1;  // of Robot::meshes
   Pose X_BG;
   double mu = 1, torsion_radius = 0, rolling_radius = 0;  // friction [-], [m], [m]
   int contype = 1, conaffinity = 1, priority = 0;
@@ -82,7 +84,8 @@ struct RobotFrame {
   Pose X_BF;
 };
 
-// q(follower) = sum of polynomial[k] (q(leader) - its reference)^k + the follower's reference; without a leader the follower stands still.
+// q(follower) = sum of polynomial[k] (q(leader) - its reference)^k + the follower's reference;
+// without a leader the follower stands still.
 struct RobotCoupling {
   std::string follower, leader;
   std::vector<double> polynomial;
@@ -107,7 +110,8 @@ struct RobotTendon {
   Place place;
 };
 
-// Force on its joint or tendon: gear times (gain u + bias[0] + bias[1] l + bias[2] l'), l = gear times the coordinate, within `forces`.
+// Force on its joint or tendon: gear times (gain u + bias[0] + bias[1] l + bias[2] l'), l =
+// gear times the coordinate, within `forces`.
 struct RobotDrive {
   std::string name, joint, tendon;  // one of the last two
   double gear = 1, gain = 1;

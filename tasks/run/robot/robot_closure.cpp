@@ -36,7 +36,9 @@ std::vector<Joint> singleJoints(const Robot& robot) {
   return all;
 }
 
-Pose poseOf(const std::vector<Pose>& poses, int body) { return body < 0 ? Pose{} : poses[static_cast<std::size_t>(body)]; }
+Pose poseOf(const std::vector<Pose>& poses, int body) {
+  return body < 0 ? Pose{} : poses[static_cast<std::size_t>(body)];
+}
 
 // How far all loops and couplings are off, one after the other.
 class Misses {
@@ -69,7 +71,8 @@ class Misses {
   }
 
  private:
-  static void addLoop(const RobotLoop& loop, const LoopFrames& frames, const std::vector<Pose>& poses, std::vector<double>& all) {
+  static void addLoop(const RobotLoop& loop, const LoopFrames& frames, const std::vector<Pose>& poses,
+                      std::vector<double>& all) {
     const Pose X_BA = (poseOf(poses, loop.b) * frames.X_BJ).inverse() * (poseOf(poses, loop.a) * frames.X_AJ);
     for (int k = 0; k < 3; ++k) all.push_back(X_BA.p[k]);
     for (int k = 0; loop.is_weld && k < 3; ++k) all.push_back((X_BA.q.w() < 0 ? -2 : 2) * X_BA.q.vec()[k]);
@@ -134,7 +137,8 @@ std::vector<Vector> slopes(const Misses& misses, const std::vector<std::size_t>&
 }
 
 std::size_t worstOf(const Vector& miss) {
-  const auto worst = std::max_element(miss.begin(), miss.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
+  const auto worst =
+      std::max_element(miss.begin(), miss.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
   return static_cast<std::size_t>(worst - miss.begin());
 }
 
@@ -159,16 +163,18 @@ void closePose(const Robot& robot, const std::vector<bool>& held, std::vector<do
   }
   for (int pass = 0; pass < kPasses && std::abs(miss[worstOf(miss)]) > kClosed; ++pass) {
     const Vector step = leastStep(slopes(misses, moved, q, miss.size()), miss);
-    const double longest = step.empty() ? 0 : std::abs(step[worstOf(step)]), share = longest > kLongestStep ? kLongestStep / longest : 1;
+    const double longest = step.empty() ? 0 : std::abs(step[worstOf(step)]),
+                 share = longest > kLongestStep ? kLongestStep / longest : 1;
     for (std::size_t j = 0; j < moved.size(); ++j) q[moved[j]] += share * step[j];
     miss = misses.at(q);
   }
   const std::size_t worst = worstOf(miss);
   if (std::abs(miss[worst]) <= kGood) return;
-  throw InputError(fmt::format(
-      "{}: can't be closed from this pose: its sides stay {:.3g} (m or rad) apart, whatever the other joints do. Start from another "
-      "keyframe, or give \"start\" other joints.",
-      misses.placeOf(worst), std::abs(miss[worst])));
+  throw InputError(
+      fmt::format("{}: can't be closed from this pose: its sides stay {:.3g} (m or rad) apart, whatever the other "
+                  "joints do. Start from another "
+                  "keyframe, or give \"start\" other joints.",
+                  misses.placeOf(worst), std::abs(miss[worst])));
 }
 
 }  // namespace pincer::tasks

@@ -12,8 +12,8 @@ struct LoopFrames {
 };
 LoopFrames framesOf(const Robot& robot, const RobotLoop& loop);
 
-// Moves hinges and slides, by the least way, until all loops and couplings hold to round-off; those of `held` (by coordinates) stay. What holds already isn't
-// touched. Throws InputError at the loop or coupling that stays open.
+// Moves hinges and slides, by the least way, until all loops and couplings hold to round-off; those of `held` (by
+// coordinates) stay. What holds already isn't touched. Throws InputError at the loop or coupling that stays open.
 void closePose(const Robot& robot, const std::vector<bool>& held, std::vector<double>& q);
 
 }  // namespace pincer::tasks

@@ -32,10 +32,12 @@ void addInertia(const engine::MassProperties& inertia, const Pose& X_LB, RobotLi
 }
 
 bool isNamedApart(const Robot& robot, int body) {
-  return std::any_of(robot.excluded.begin(), robot.excluded.end(), [&](const RobotExclusion& e) { return e.a == body || e.b == body; });
+  return std::any_of(robot.excluded.begin(), robot.excluded.end(),
+                     [&](const RobotExclusion& e) { return e.a == body || e.b == body; });
 }
 
-// Parts that stand still cost nothing: those that are kept apart from something are bodies of their own, and so is what is fixed to them.
+// Parts that stand still cost nothing: those that are kept apart from something are bodies of
+// their own, and so is what is fixed to them.
 bool isPartApart(const PosedRobot& posed, int index) {
   const int parent = posed.body(index).parent;
   if (!posed.links[static_cast<std::size_t>(posed.link_of[static_cast<std::size_t>(parent)])].is_static) return false;
@@ -47,7 +49,8 @@ void gatherLinks(PosedRobot& posed) {
     const RobotBody& body = posed.body(i);
     const bool is_own = body.parent < 0 || moves(body) || isPartApart(posed, i);
     if (is_own) posed.links.push_back({i, !moves(body), {}, {}});
-    posed.link_of.push_back(is_own ? static_cast<int>(posed.links.size()) - 1 : posed.link_of[static_cast<std::size_t>(body.parent)]);
+    posed.link_of.push_back(is_own ? static_cast<int>(posed.links.size()) - 1
+                                   : posed.link_of[static_cast<std::size_t>(body.parent)]);
     RobotLink& link = posed.links[static_cast<std::size_t>(posed.link_of.back())];
     const Pose X_LB = is_own ? Pose{} : posed.pose(link.body).inverse() * posed.pose(i);
     for (const RobotGeom& geom : body.geoms) link.geoms.emplace_back(&geom, is_own ? geom.X_BG : X_LB * geom.X_BG);

@@ -110,8 +110,8 @@ struct MeshSolid {
   Mat3 second_per_size;
 };
 
-// First the centre of mass, seen from the middle of the faces, then volume and inertia, seen from there: with tetrahedra that all count as
-// positive the result depends on where they are seen from, and this is how MuJoCo does it.
+// First the centre of mass, seen from the middle of the faces, then volume and inertia, seen from there: with
+// tetrahedra that all count as positive the result depends on where they are seen from, and this is how MuJoCo does it.
 MeshSolid solidOf(const RobotMesh& mesh) {
   const std::vector<Triangle> triangles = massTriangles(mesh);
   const Vec3 middle = middleOf(triangles);
@@ -172,15 +172,17 @@ double geomVolume(const RobotGeom& geom, const std::vector<RobotMesh>& meshes) {
 MassProperties geomMass(const RobotGeom& geom, const std::vector<RobotMesh>& meshes) {
   if (geom.mass == 0) return {};
   if (geom.shape != RobotShape::kMesh) {
-    return engine::movedBy(geom.X_BG, {geom.mass, Vec3::Zero(), inertiaOf(geom.mass * Mat3(secondPerVolume(geom).asDiagonal()))});
+    return engine::movedBy(geom.X_BG,
+                           {geom.mass, Vec3::Zero(), inertiaOf(geom.mass * Mat3(secondPerVolume(geom).asDiagonal()))});
   }
   const RobotMesh& mesh = meshes[static_cast<std::size_t>(geom.mesh)];
   const MeshSolid solid = solidOf(mesh);
   if (!(solid.size > 0)) {
-    throw InputError(fmt::format(
-        "{}: the mesh \"{}\" has no volume, so its mass can't be spread over it. Give the body an <inertial>, the geom mass=\"0\", "
-        "or the mesh inertia=\"shell\".",
-        geom.place, printable(mesh.name)));
+    throw InputError(
+        fmt::format("{}: the mesh \"{}\" has no volume, so its mass can't be spread over it. Give the body an "
+                    "<inertial>, the geom mass=\"0\", "
+                    "or the mesh inertia=\"shell\".",
+                    geom.place, printable(mesh.name)));
   }
   return engine::movedBy(geom.X_BG, {geom.mass, solid.centre, inertiaOf(geom.mass * solid.second_per_size)});
 }

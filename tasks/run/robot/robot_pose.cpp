@@ -15,7 +15,8 @@ Quat quatAt(const double* q) { return Quat(q[0], q[1], q[2], q[3]).normalized();
 // The turn that a joint has made, about its own place.
 Pose turnedAt(const Vec3& p, const Quat& turn) { return {turn, p - turn * p}; }
 
-// Past the pose before it; joints of one body move it one after the other, each in the frame that the ones before have moved.
+// Past the pose before it; joints of one body move it one after the other, each in
+// the frame that the ones before have moved.
 Pose jointMotion(const RobotJoint& joint, const double* q) {
   switch (joint.kind) {
     case RobotJointKind::kHinge:
@@ -57,7 +58,9 @@ double ownInertia(const Robot& robot, const std::vector<Pose>& poses, int body, 
 
 }  // namespace
 
-int coordinateCount(RobotJointKind kind) { return kind == RobotJointKind::kFree ? 7 : kind == RobotJointKind::kBall ? 4 : 1; }
+int coordinateCount(RobotJointKind kind) {
+  return kind == RobotJointKind::kFree ? 7 : kind == RobotJointKind::kBall ? 4 : 1;
+}
 
 std::vector<double> drawnCoordinates(const Robot& robot) {
   std::vector<double> q;

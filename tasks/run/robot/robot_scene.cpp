@@ -26,14 +26,19 @@ constexpr double kRoundOff = 1e-6;         // of a tick, in a duration
 void refuseTheRest(const Robot& robot) {
   for (const RobotTendon& tendon : robot.tendons) {
     if (tendon.limits || tendon.friction != 0)
-      rejectAt(tendon.place,
-               fmt::format("tendon \"{}\" has limits or friction of its own, which can't be had. Give them to its joints.", tendon.name));
+      rejectAt(
+          tendon.place,
+          fmt::format("tendon \"{}\" has limits or friction of its own, which can't be had. Give them to its joints.",
+                      tendon.name));
     if (tendon.stiffness > 0 && tendon.rest && (*tendon.rest)[0] != (*tendon.rest)[1])
       rejectAt(tendon.place,
-               fmt::format("tendon \"{}\" has a spring that is slack between two lengths. Give it one springlength.", tendon.name));
+               fmt::format("tendon \"{}\" has a spring that is slack between two lengths. Give it one springlength.",
+                           tendon.name));
   }
   for (const RobotBody& body : robot.bodies) {
-    if (body.is_driven) rejectAt(body.place, fmt::format("body \"{}\" is driven (mocap), which can't be had from a file yet.", body.name));
+    if (body.is_driven)
+      rejectAt(body.place,
+               fmt::format("body \"{}\" is driven (mocap), which can't be had from a file yet.", body.name));
   }
 }
 
@@ -46,7 +51,8 @@ void noteForcesOfBalls(const RobotJoint& joint, ImportNotes& notes) {
                                                    {"frictionloss", joint.friction},
                                                    {"armature", is_free ? joint.armature : 0}};
   for (const auto& [name, value] : forces) {
-    if (value != 0) notes.add(fmt::format("{} joint {}", is_free ? "free" : "ball", name), "Hinges and slides have it.", joint.place);
+    if (value != 0)
+      notes.add(fmt::format("{} joint {}", is_free ? "free" : "ball", name), "Hinges and slides have it.", joint.place);
   }
 }
 
@@ -78,11 +84,19 @@ void writeGeom(const RobotGeom& geom, const Pose& X, const std::vector<RobotMesh
   if (geom.torsion_radius > 0) json.key("torsion_radius").value(geom.torsion_radius);
   if (geom.rolling_radius > 0) json.key("rolling_radius").value(geom.rolling_radius);
   json.endObject();
-  json.key("collides").beginObject().key("as").value(geom.contype).key("with").value(geom.conaffinity).endObject().endObject();
+  json.key("collides")
+      .beginObject()
+      .key("as")
+      .value(geom.contype)
+      .key("with")
+      .value(geom.conaffinity)
+      .endObject()
+      .endObject();
 }
 
 // Touchable shapes; a body that nothing touches is a dot that is only seen.
-void writeShapes(const std::vector<std::pair<const RobotGeom*, Pose>>& geoms, const std::vector<RobotMesh>& meshes, JsonWriter& json) {
+void writeShapes(const std::vector<std::pair<const RobotGeom*, Pose>>& geoms, const std::vector<RobotMesh>& meshes,
+                 JsonWriter& json) {
   json.key("shapes").beginArray();
   bool is_empty = true;
   for (const auto& [geom, X] : geoms) {
@@ -91,7 +105,14 @@ void writeShapes(const std::vector<std::pair<const RobotGeom*, Pose>>& geoms, co
     is_empty = false;
   }
   if (is_empty) {
-    json.beginObject().key("shape").beginObject().key("type").value("sphere").key("radius").value(kDotRadius).endObject();
+    json.beginObject()
+        .key("shape")
+        .beginObject()
+        .key("type")
+        .value("sphere")
+        .key("radius")
+        .value(kDotRadius)
+        .endObject();
     json.key("collides").beginObject().key("as").value(0).key("with").value(0).endObject().endObject();
   }
   json.endArray();
@@ -116,7 +137,8 @@ void writeBetween(SceneWriting& w, const std::string& name, const Pose& X_WB) {
   w.json.endObject();
 }
 
-// True of a free body that carries others: trees hang on something, so three sliders and a ball joint hold it to the world.
+// True of a free body that carries others: trees hang on something, so three
+// sliders and a ball joint hold it to the world.
 bool isFloatingBase(const PosedRobot& posed, const RobotLink& link) {
   const RobotBody& body = posed.body(link.body);
   if (body.joints.empty() || body.joints[0].kind != RobotJointKind::kFree) return false;
@@ -140,8 +162,8 @@ void writeLink(SceneWriting& w, const RobotLink& link) {
     writeBetween(w, betweenName(w, body, k), w.posed.poseAfter(link.body, k + 1));
   }
   if (isFloatingBase(w.posed, link)) {
-    w.notes.add("free body that carries others", "Three sliders and a ball joint hold it; bodies of a microgram stand between.",
-                body.place);
+    w.notes.add("free body that carries others",
+                "Three sliders and a ball joint hold it; bodies of a microgram stand between.", body.place);
     for (int k = 0; k < 3; ++k) writeBetween(w, slideName(w, body, k), {Quat::Identity(), w.posed.pose(link.body).p});
   }
   w.json.beginObject().key("name").value(w.bodyName(link.body));
@@ -183,7 +205,11 @@ void writeJoint(SceneWriting& w, int index, std::size_t k, double start) {
   const RobotBody& body = w.posed.body(index);
   const RobotJoint& joint = body.joints[k];
   const Pose X_WB = w.posed.poseAfter(index, k);
-  w.json.beginObject().key("name").value(w.names.of("joint", joint.name)).key("type").value(kTypes[static_cast<int>(joint.kind)]);
+  w.json.beginObject()
+      .key("name")
+      .value(w.names.of("joint", joint.name))
+      .key("type")
+      .value(kTypes[static_cast<int>(joint.kind)]);
   w.json.key("body").value(k + 1 < body.joints.size() ? betweenName(w, body, k) : w.bodyName(index));
   if (k > 0) {
     w.json.key("to").value(betweenName(w, body, k - 1));
@@ -209,7 +235,13 @@ void writeFloatingBase(SceneWriting& w, const RobotLink& link) {
     w.json.key("point").value(p_W).key("axis").value(Vec3(Vec3::Unit(k))).endObject();
   }
   w.json.beginObject().key("name").value(w.names.of("joint", body.joints[0].name)).key("type").value("ball");
-  w.json.key("body").value(w.bodyName(link.body)).key("to").value(slideName(w, body, 2)).key("point").value(p_W).endObject();
+  w.json.key("body")
+      .value(w.bodyName(link.body))
+      .key("to")
+      .value(slideName(w, body, 2))
+      .key("point")
+      .value(p_W)
+      .endObject();
 }
 
 // The link of a body, that of the world or of what stands still: -1.
@@ -294,7 +326,8 @@ void addApart(const std::string& a, const std::string& b, Apart& apart) {
   if (a != b) apart.insert(std::minmax(a, b));
 }
 
-// The name of a body's link, empty of a world without geoms. Only links can be kept apart: what else of the link touches is noted.
+// The name of a body's link, empty of a world without geoms. Only links can be kept
+// apart: what else of the link touches is noted.
 std::string linkName(SceneWriting& w, const RobotExclusion& exclusion, int body) {
   if (body < 0) return w.posed.robot.world_geoms.empty() ? "" : w.names.of("world", "world");
   const RobotLink& link = w.posed.links[static_cast<std::size_t>(w.posed.link_of[static_cast<std::size_t>(body)])];
@@ -302,8 +335,8 @@ std::string linkName(SceneWriting& w, const RobotExclusion& exclusion, int body)
   const auto isOwn = [&](const RobotGeom* geom) {
     return std::any_of(own.begin(), own.end(), [&](const RobotGeom& g) { return &g == geom; });
   };
-  const bool is_part =
-      std::any_of(link.geoms.begin(), link.geoms.end(), [&](const auto& g) { return !g.first->isOnlySeen() && !isOwn(g.first); });
+  const bool is_part = std::any_of(link.geoms.begin(), link.geoms.end(),
+                                   [&](const auto& g) { return !g.first->isOnlySeen() && !isOwn(g.first); });
   if (is_part) w.notes.add("exclude of a part", "All that is fixed to it is kept apart, too.", exclusion.place);
   return w.bodyName(link.body);
 }
@@ -312,7 +345,8 @@ std::string linkName(SceneWriting& w, const RobotExclusion& exclusion, int body)
 void addCarried(SceneWriting& w, Apart& apart) {
   for (const RobotLink& link : w.posed.links) {
     const RobotBody& body = w.posed.body(link.body);
-    if (body.joints.size() > 1 && body.parent >= 0) addApart(w.bodyName(link.body), w.bodyName(w.posed.carrier(body.parent)), apart);
+    if (body.joints.size() > 1 && body.parent >= 0)
+      addApart(w.bodyName(link.body), w.bodyName(w.posed.carrier(body.parent)), apart);
   }
 }
 
@@ -332,15 +366,26 @@ void writePairs(SceneWriting& w) {
 
 }  // namespace
 
-void rejectAt(const Place& place, std::string_view problem) { throw InputError(printableMessage(fmt::format("{}: {}", place, problem))); }
+void rejectAt(const Place& place, std::string_view problem) {
+  throw InputError(printableMessage(fmt::format("{}: {}", place, problem)));
+}
 
 std::string sceneOfRobot(const Robot& robot, const RobotSceneOptions& options, ImportNotes& notes) {
   refuseTheRest(robot);
   noteTheRest(robot, notes);
   const PosedRobot posed = poseRobot(robot, options, notes);
   SceneWriting w{posed, notes, NamesOfRobot(options.prefix)};
-  w.json.beginObject().key("version").value(1).key("description").value(robot.name).key("gravity").value(robot.gravity_W);
-  w.json.key("tick").value(robot.tick).key("duration").value(std::ceil(options.duration / robot.tick - kRoundOff) * robot.tick);
+  w.json.beginObject()
+      .key("version")
+      .value(1)
+      .key("description")
+      .value(robot.name)
+      .key("gravity")
+      .value(robot.gravity_W);
+  w.json.key("tick")
+      .value(robot.tick)
+      .key("duration")
+      .value(std::ceil(options.duration / robot.tick - kRoundOff) * robot.tick);
   w.json.key("combination").value("maximum");
   writeBodies(w);
   writeJoints(w);

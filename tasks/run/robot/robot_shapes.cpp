@@ -28,7 +28,8 @@ std::vector<Vec3> hullPoints(const RobotGeom& geom, const RobotMesh& mesh) {
   try {
     return contact::Polytope::hullOf(mesh.triangles.vertices, mesh.name)->vertices();
   } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: the mesh \"{}\" has no hull: {}", geom.place, printable(mesh.name), error.what()));
+    throw InputError(
+        fmt::format("{}: the mesh \"{}\" has no hull: {}", geom.place, printable(mesh.name), error.what()));
   }
 }
 

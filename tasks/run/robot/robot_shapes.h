@@ -5,8 +5,8 @@
 
 namespace pincer::tasks {
 
-// Writes the value of "shape"; X_BG is only read for planes, which have it within. Ellipsoids are hulls of 642 points on them, meshes their own
-// hulls. Throws InputError at the geom: a mesh without a hull.
+// Writes the value of "shape"; X_BG is only read for planes, which have it within. Ellipsoids are hulls of 642 points
+// on them, meshes their own hulls. Throws InputError at the geom: a mesh without a hull.
 void writeRobotShape(const RobotGeom& geom, const Pose& X_BG, const std::vector<RobotMesh>& meshes, JsonWriter& json);
 
 }  // namespace pincer::tasks

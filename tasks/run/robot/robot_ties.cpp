@@ -55,7 +55,9 @@ void writeCouplings(SceneWriting& w) {
 Terms termsOf(const Robot& robot, const RobotDrive& drive) {
   Terms terms = {{drive.joint, 1}};
   if (drive.joint.empty()) {
-    terms = std::find_if(robot.tendons.begin(), robot.tendons.end(), [&](const RobotTendon& t) { return t.name == drive.tendon; })->joints;
+    terms = std::find_if(robot.tendons.begin(), robot.tendons.end(), [&](const RobotTendon& t) {
+              return t.name == drive.tendon;
+            })->joints;
   }
   for (auto& term : terms) term.second *= drive.gear;
   return terms;
@@ -80,7 +82,8 @@ void writeTendons(SceneWriting& w) {
   for (const RobotDrive& drive : w.posed.robot.drives) {
     if (isOfOneJoint(drive)) continue;
     w.json.beginObject().key("name").value(tendonName(w, drive)).key("joints").beginObject();
-    for (const auto& [joint, factor] : termsOf(w.posed.robot, drive)) w.json.key(w.names.of("joint", joint)).value(factor);
+    for (const auto& [joint, factor] : termsOf(w.posed.robot, drive))
+      w.json.key(w.names.of("joint", joint)).value(factor);
     w.json.endObject().endObject();
   }
   w.json.endArray();
@@ -120,8 +123,16 @@ void writeTendonSprings(SceneWriting& w) {
   for (const RobotTendon& tendon : w.posed.robot.tendons) {
     if (!hasSpring(tendon)) continue;
     w.json.beginObject().key("name").value(w.names.of("tendon's spring", tendon.name + "_spring"));
-    w.json.key("tendon").value(w.names.of("sprung tendon", tendon.name)).key("type").value("affine").key("gain").value(0);
-    w.json.key("offset").value(tendon.stiffness * slackLength(w.posed.robot, tendon)).key("stiffness").value(tendon.stiffness);
+    w.json.key("tendon")
+        .value(w.names.of("sprung tendon", tendon.name))
+        .key("type")
+        .value("affine")
+        .key("gain")
+        .value(0);
+    w.json.key("offset")
+        .value(tendon.stiffness * slackLength(w.posed.robot, tendon))
+        .key("stiffness")
+        .value(tendon.stiffness);
     w.json.key("damping").value(tendon.damping).endObject();
   }
 }
@@ -142,16 +153,20 @@ std::optional<Vec2> forcesOf(const Robot& robot, const RobotDrive& drive) {
 }
 
 void writeLaw(SceneWriting& w, const RobotDrive& drive) {
-  const double damping =
-      drive.damping_ratio > 0 ? 2 * drive.damping_ratio * std::sqrt(drive.gain * feltInertia(w.posed.robot, drive)) : -drive.bias[2];
+  const double damping = drive.damping_ratio > 0
+                             ? 2 * drive.damping_ratio * std::sqrt(drive.gain * feltInertia(w.posed.robot, drive))
+                             : -drive.bias[2];
   if (drive.bias[1] > 0 || damping < 0) {
     rejectAt(
         drive.place,
-        fmt::format("drive \"{}\" pushes further what is off already: the second and third number of biasprm are at most 0.", drive.name));
+        fmt::format(
+            "drive \"{}\" pushes further what is off already: the second and third number of biasprm are at most 0.",
+            drive.name));
   }
   w.json.key("type").value("affine").key("gain").value(drive.gain).key("offset").value(drive.bias[0]);
   w.json.key("stiffness").value(0 - drive.bias[1]).key("damping").value(damping);
-  if (drive.controls) w.json.key("control").beginArray().value((*drive.controls)[0]).value((*drive.controls)[1]).endArray();
+  if (drive.controls)
+    w.json.key("control").beginArray().value((*drive.controls)[0]).value((*drive.controls)[1]).endArray();
   if (const auto forces = forcesOf(w.posed.robot, drive))
     w.json.key("force").beginArray().value((*forces)[0]).value((*forces)[1]).endArray();
 }
@@ -166,7 +181,9 @@ void writeDrives(SceneWriting& w) {
     w.json.value(isOfOneJoint(drive) ? w.names.of("joint", drive.joint) : tendonName(w, drive));
     writeLaw(w, drive);
     const double control = w.posed.key && !w.posed.key->controls.empty() ? w.posed.key->controls[i] : 0;
-    w.json.key("target").value(drive.controls ? std::clamp(control, (*drive.controls)[0], (*drive.controls)[1]) : control).endObject();
+    w.json.key("target")
+        .value(drive.controls ? std::clamp(control, (*drive.controls)[0], (*drive.controls)[1]) : control)
+        .endObject();
   }
   writeTendonSprings(w);
   w.json.endArray();

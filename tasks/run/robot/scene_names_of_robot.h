@@ -1,4 +1,5 @@
-// scene_names_of_robot: the names that a robot's parts get in a scene: those of the file, of letters that a scene takes, each one once.
+// scene_names_of_robot: the names that a robot's parts get in a scene: those of the file, of
+// letters that a scene takes, each one once.
 #pragma once
 #include <map>
 #include <set>
@@ -10,8 +11,8 @@ class NamesOfRobot {
  public:
   explicit NamesOfRobot(std::string prefix) : prefix_(std::move(prefix)) {}
 
-  // The name in the scene of a part: letters, digits, - and _; with a number behind it where it is taken. The same part has the same name again:
-  // parts are told apart by `kind` and `name`.
+  // The name in the scene of a part: letters, digits, - and _; with a number behind it where it is taken. The same part
+  // has the same name again: parts are told apart by `kind` and `name`.
   const std::string& of(const std::string& kind, const std::string& name);
 
  private:

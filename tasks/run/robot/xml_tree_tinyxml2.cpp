@@ -19,7 +19,8 @@ class TreeBuilder {
 
   XmlElement build(const tinyxml2::XMLElement& from, int depth) {
     XmlElement element{from.Name(), {}, {}, file_, from.GetLineNum()};
-    if (++count_ > kMostXmlElements) element.reject(fmt::format("is one element too many: a file has at most {}.", kMostXmlElements));
+    if (++count_ > kMostXmlElements)
+      element.reject(fmt::format("is one element too many: a file has at most {}.", kMostXmlElements));
     if (depth > kDeepestXml) element.reject(fmt::format("lies deeper than {} levels.", kDeepestXml));
     readAttributes(from, element);
     readChildren(from, element, depth);
@@ -51,7 +52,8 @@ class TreeBuilder {
 }  // namespace
 
 const std::string* XmlElement::find(std::string_view name) const {
-  const auto at = std::find_if(attributes.begin(), attributes.end(), [&](const XmlAttribute& a) { return a.name == name; });
+  const auto at =
+      std::find_if(attributes.begin(), attributes.end(), [&](const XmlAttribute& a) { return a.name == name; });
   return at == attributes.end() ? nullptr : &at->value;
 }
 
@@ -64,8 +66,9 @@ void XmlElement::reject(std::string_view problem) const {
 XmlElement parseXml(std::string_view text, const std::string& name) {
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    throw InputError(fmt::format("{}:{}: isn't well-formed XML ({}). The file is cut off or was edited by hand: look at the element there.",
-                                 name, document.ErrorLineNum(), tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID())));
+    throw InputError(fmt::format(
+        "{}:{}: isn't well-formed XML ({}). The file is cut off or was edited by hand: look at the element there.",
+        name, document.ErrorLineNum(), tinyxml2::XMLDocument::ErrorIDToName(document.ErrorID())));
   }
   const tinyxml2::XMLElement* root = document.RootElement();
   if (!root) throw InputError(fmt::format("{}: has no element.", name));

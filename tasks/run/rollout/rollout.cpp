@@ -13,7 +13,8 @@ namespace {
 // One row of a job: its places in the arrays.
 class RolloutRow {
  public:
-  RolloutRow(const RolloutJob& job, const SceneModel& model, std::int64_t row) : job_(job), model_(model), row_(row), inputs_(model) {}
+  RolloutRow(const RolloutJob& job, const SceneModel& model, std::int64_t row)
+      : job_(job), model_(model), row_(row), inputs_(model) {}
 
   void run(SceneState& state, SceneStepper& stepper, const std::function<bool()>& stop) {
     bool broken = false;
@@ -39,14 +40,16 @@ class RolloutRow {
     const std::span<const double> row = cell(job_.controls, t, controlSize(model_));
     if (row.empty()) return;
     const std::size_t fingers = inputs_.finger_place.size();
-    for (std::size_t i = 0; i < fingers; ++i) inputs_.finger_place[i] = Vec3(row[3 * i], row[3 * i + 1], row[3 * i + 2]);
+    for (std::size_t i = 0; i < fingers; ++i)
+      inputs_.finger_place[i] = Vec3(row[3 * i], row[3 * i + 1], row[3 * i + 2]);
     for (std::size_t i = 0; i < inputs_.drive_target.size(); ++i) inputs_.drive_target[i] = row[3 * fingers + i];
   }
 
   void record(std::int64_t t, const SceneState& state, const SceneStepper& stepper, std::uint32_t status) {
     if (const auto out = cell(job_.state, t, stateSize(model_)); !out.empty()) writeStateRow(model_, state, out);
     if (const auto out = cell(job_.sensors, t, sensorSize(model_)); !out.empty()) {
-      const Moment moment{model_.grasp, state.grasp, stepper.fingers(), model_.scene.starts, stepper.scratch(), model_.scene.frames};
+      const Moment moment{model_.grasp,        state.grasp,       stepper.fingers(),
+                          model_.scene.starts, stepper.scratch(), model_.scene.frames};
       for (std::size_t i = 0; i < out.size(); ++i) out[i] = model_.scene.record.quantities[i].measure(moment);
     }
     if (!job_.status.empty()) cell(job_.status, t, 1)[0] = static_cast<std::int32_t>(status);
@@ -145,7 +148,9 @@ void RolloutPool::runRows(const RolloutJob& job, std::int64_t begin, std::int64_
       memory.stepper = std::make_unique<SceneStepper>(*model);
       memory.model = model;
     }
-    RolloutRow(job, *model, row).run(*job.states[static_cast<std::size_t>(row)], *memory.stepper, [this] { return stopped_.load(); });
+    RolloutRow(job, *model, row).run(*job.states[static_cast<std::size_t>(row)], *memory.stepper, [this] {
+      return stopped_.load();
+    });
   }
 }
 

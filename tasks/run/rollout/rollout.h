@@ -1,13 +1,14 @@
 // rollout: many states stepped in parallel, each with its own row of controls, and what came of every tick in arrays.
 //
-//   controls  (rows x ticks x control_size)   device places of all fingers, x, y, z each [m], then what each drive is told; NaN: as SceneInputs has it
-//   state     (rows x ticks x state_size)     time [s], then per body x, y, z, qw, qx, qy, qz of X_WB, then per body v_W, w_W, then the coordinates of
-//                                             pivots and sliders, then their rates
+//   controls  (rows x ticks x control_size)   device places of all fingers, x, y, z each [m], then what each
+//                                             drive is told; NaN: as SceneInputs has it
+//   state     (rows x ticks x state_size)     time [s], then per body x, y, z, qw, qx, qy, qz of X_WB, then per body
+//                                             v_W, w_W, then the coordinates of pivots and sliders, then their rates
 //   sensors   (rows x ticks x sensor_size)    the quantities that the scene records, in its order
 //   status    (rows x ticks)                  engine::StepStatus
 //
-// Rows are handed to threads in chunks; each is computed by itself, so that neither threads nor chunks change a bit. After a tick whose state isn't
-// finite a row repeats its last values, flagged.
+// Rows are handed to threads in chunks; each is computed by itself, so that neither threads nor chunks change a bit.
+// After a tick whose state isn't finite a row repeats its last values, flagged.
 // Source of the shapes: MuJoCo's `mujoco.rollout`; departure: beside drives, fingers are told places.
 #pragma once
 #include <atomic>
@@ -49,8 +50,8 @@ class RolloutPool {
 
   int threads() const { return static_cast<int>(workers_.size()); }
 
-  // Runs all rows and returns; asks `stop` some times a second, and ends within a thousand ticks once it says so (false is returned). One job at a
-  // time. Throws what a row threw.
+  // Runs all rows and returns; asks `stop` some times a second, and ends within a thousand ticks once it says so (false
+  // is returned). One job at a time. Throws what a row threw.
   bool run(const RolloutJob& job, const std::function<bool()>& stop);
 
  private:

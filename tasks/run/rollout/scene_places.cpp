@@ -21,34 +21,38 @@ void requireFree(const SceneModel& model, std::size_t body) {
   const engine::WorldModel& world = model.grasp.world;
   const std::string& name = model.scene.bodies[body].name;
   if (world.bodies[body].tree >= 0)
-    throw InputError(fmt::format("body \"{}\" hangs on a tree of joints, which place it. Set its joints instead.", name));
+    throw InputError(
+        fmt::format("body \"{}\" hangs on a tree of joints, which place it. Set its joints instead.", name));
   const auto stands_on_it = [&](const engine::TreeModel& tree) { return tree.base == static_cast<int>(body); };
   if (std::any_of(world.trees.begin(), world.trees.end(), stands_on_it))
-    throw InputError(
-        fmt::format("body \"{}\" carries a tree of joints and can't be placed anew. Place it in the scene, or give it a motion.", name));
+    throw InputError(fmt::format(
+        "body \"{}\" carries a tree of joints and can't be placed anew. Place it in the scene, or give it a motion.",
+        name));
 }
 
 int jointOfScene(const SceneModel& model, int joint) { return model.joints[static_cast<std::size_t>(joint)]; }
 
 // Name of the joint that `own` follows.
-std::string_view leaderOf(const engine::WorldModel& world, const engine::TreeModel& tree, const engine::TreeCoordinate& own) {
+std::string_view leaderOf(const engine::WorldModel& world, const engine::TreeModel& tree,
+                          const engine::TreeCoordinate& own) {
   return world.joints[static_cast<std::size_t>(tree.coordinates[static_cast<std::size_t>(own.leader)].joint)].name;
 }
 
 void requireRange(const engine::JointModel& joint, double position, double velocity) {
   if (!std::isfinite(position) || !std::isfinite(velocity))
-    throw InputError(fmt::format("joint \"{}\": position {} with velocity {} isn't finite.", joint.name, position, velocity));
+    throw InputError(
+        fmt::format("joint \"{}\": position {} with velocity {} isn't finite.", joint.name, position, velocity));
   // A stop that is pushed gives by a round-off, so that a joint's own place can always be given back to it.
   constexpr double kGive = 1e-6;
   if (position < joint.traits.lower - kGive || position > joint.traits.upper + kGive) {
-    throw InputError(fmt::format("joint \"{}\": position = {} is out of range [{}, {}], its stops.", joint.name, position,
-                                 joint.traits.lower, joint.traits.upper));
+    throw InputError(fmt::format("joint \"{}\": position = {} is out of range [{}, {}], its stops.", joint.name,
+                                 position, joint.traits.lower, joint.traits.upper));
   }
 }
 
 // The one body that `joint` alone holds to what never moves.
-void placeHeldBody(const engine::WorldModel& world, engine::WorldState& state, const engine::JointModel& joint, double position,
-                   double velocity) {
+void placeHeldBody(const engine::WorldModel& world, engine::WorldState& state, const engine::JointModel& joint,
+                   double position, double velocity) {
   const bool turns = joint.kind == engine::JointKind::kPivot;
   const Pose X_WJ = joint.b < 0 ? joint.X_BJ : state.bodies[static_cast<std::size_t>(joint.b)].X_WI * joint.X_BJ;
   const Quat turn(math::cos(position / 2), 0, 0, math::sin(position / 2));
@@ -71,8 +75,9 @@ void placeBody(const SceneModel& model, SceneState& state, int body, const engin
   requireFree(model, index);
   const double length = start.X_WB.q.norm();
   if (!(length > 0) || !std::isfinite(length)) {
-    throw InputError(fmt::format("body \"{}\": quaternion w, x, y, z = {}, {}, {}, {} is no rotation. It has to be finite and not zero.",
-                                 model.scene.bodies[index].name, start.X_WB.q.w(), start.X_WB.q.x(), start.X_WB.q.y(), start.X_WB.q.z()));
+    throw InputError(fmt::format(
+        "body \"{}\": quaternion w, x, y, z = {}, {}, {}, {} is no rotation. It has to be finite and not zero.",
+        model.scene.bodies[index].name, start.X_WB.q.w(), start.X_WB.q.x(), start.X_WB.q.y(), start.X_WB.q.z()));
   }
   starts[index].X_WB.q.coeffs() /= length;
   std::vector<Vec3> points;
@@ -99,15 +104,16 @@ void placeJoint(const SceneModel& model, SceneState& state, int joint, double po
     const engine::TreeModel& tree = world.trees[static_cast<std::size_t>(at.tree)];
     const engine::TreeCoordinate& coordinate = tree.coordinates[static_cast<std::size_t>(at.coordinate)];
     if (coordinate.leader >= 0) {
-      throw InputError(
-          fmt::format("joint \"{}\" follows joint \"{}\" by a coupling. Set that one.", own.name, leaderOf(world, tree, coordinate)));
+      throw InputError(fmt::format("joint \"{}\" follows joint \"{}\" by a coupling. Set that one.", own.name,
+                                   leaderOf(world, tree, coordinate)));
     }
     engine::setJoint(world, state.grasp.world, number, position, velocity);
   } else {
     const int group = world.bodies[static_cast<std::size_t>(own.a)].joint_group;
     if (!world.joint_groups[static_cast<std::size_t>(group)].is_held_body)
-      throw InputError(
-          fmt::format("joint \"{}\" is one of a loop of bodies, which no single joint places. Place its bodies instead.", own.name));
+      throw InputError(fmt::format(
+          "joint \"{}\" is one of a loop of bodies, which no single joint places. Place its bodies instead.",
+          own.name));
     placeHeldBody(world, state.grasp.world, own, position, velocity);
   }
   forgetContacts(state);

@@ -19,11 +19,13 @@ bool isSaid(const Row& row) {
 }
 
 template <class Named>
-int indexOf(const std::vector<Named>& items, const std::string& name, std::string_view what, std::string_view (*nameOf)(const Named&)) {
+int indexOf(const std::vector<Named>& items, const std::string& name, std::string_view what,
+            std::string_view (*nameOf)(const Named&)) {
   std::vector<std::string_view> names;
   for (const Named& item : items) names.push_back(nameOf(item));
   const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw InputError(fmt::format("{} \"{}\" isn't in this scene.{}", what, name, suggestion(name, names)));
+  if (found == names.end())
+    throw InputError(fmt::format("{} \"{}\" isn't in this scene.{}", what, name, suggestion(name, names)));
   return static_cast<int>(found - names.begin());
 }
 
@@ -38,18 +40,22 @@ std::vector<int> drivenBodies(const engine::WorldModel& world) {
 std::vector<int> jointsWithCoordinate(const std::vector<engine::JointModel>& all) {
   std::vector<int> joints;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (all[i].kind == engine::JointKind::kPivot || all[i].kind == engine::JointKind::kSlider) joints.push_back(static_cast<int>(i));
+    if (all[i].kind == engine::JointKind::kPivot || all[i].kind == engine::JointKind::kSlider)
+      joints.push_back(static_cast<int>(i));
   }
   return joints;
 }
 
 std::optional<grasp::BaselineFingers> baselinesOf(const Scene& scene) {
   const std::vector<grasp::FingerMethod> methods = methodsOf(scene);
-  const bool are_ours = std::all_of(methods.begin(), methods.end(), [](grasp::FingerMethod m) { return m == grasp::FingerMethod::kProxy; });
+  const bool are_ours = std::all_of(methods.begin(), methods.end(),
+                                    [](grasp::FingerMethod m) { return m == grasp::FingerMethod::kProxy; });
   return are_ours ? std::nullopt : std::optional(grasp::BaselineFingers(methods));
 }
 
-Pose poseOf(const std::array<double, 7>& row) { return {Quat(row[3], row[4], row[5], row[6]).normalized(), Vec3(row[0], row[1], row[2])}; }
+Pose poseOf(const std::array<double, 7>& row) {
+  return {Quat(row[3], row[4], row[5], row[6]).normalized(), Vec3(row[0], row[1], row[2])};
+}
 
 bool pushes(const SceneInputs& inputs) {
   const auto pushed = [](const engine::BodyForce& f) { return !f.f_W.isZero(0) || !f.tau_W.isZero(0); };
@@ -59,20 +65,26 @@ bool pushes(const SceneInputs& inputs) {
 }  // namespace
 
 SceneModel::SceneModel(Scene read)
-    : scene(std::move(read)), grasp(buildWorld(scene)), driven(drivenBodies(grasp.world)), joints(jointsWithCoordinate(scene.joints)) {}
+    : scene(std::move(read)),
+      grasp(buildWorld(scene)),
+      driven(drivenBodies(grasp.world)),
+      joints(jointsWithCoordinate(scene.joints)) {}
 
 int SceneModel::bodyNamed(const std::string& name) const {
-  return indexOf<engine::BodySpec>(scene.bodies, name, "body", [](const engine::BodySpec& b) { return std::string_view(b.name); });
+  return indexOf<engine::BodySpec>(scene.bodies, name, "body",
+                                   [](const engine::BodySpec& b) { return std::string_view(b.name); });
 }
 
 int SceneModel::fingerNamed(const std::string& name) const {
-  return indexOf<SceneFinger>(scene.fingers, name, "finger", [](const SceneFinger& f) { return std::string_view(f.model.name); });
+  return indexOf<SceneFinger>(scene.fingers, name, "finger",
+                              [](const SceneFinger& f) { return std::string_view(f.model.name); });
 }
 
 int SceneModel::jointNamed(const std::string& name) const {
   std::vector<engine::JointModel> named;
   for (const int joint : joints) named.push_back(scene.joints[static_cast<std::size_t>(joint)]);
-  return indexOf<engine::JointModel>(named, name, "pivot or slider", [](const engine::JointModel& j) { return std::string_view(j.name); });
+  return indexOf<engine::JointModel>(named, name, "pivot or slider",
+                                     [](const engine::JointModel& j) { return std::string_view(j.name); });
 }
 
 SceneState::SceneState(const SceneModel& model)
@@ -103,10 +115,12 @@ SceneStepper::SceneStepper(const SceneModel& model)
       motions_(model.driven.size()),
       controls_(model.scene.drives.size()) {}
 
-StepsReport SceneStepper::step(SceneState& state, const SceneInputs& inputs, std::int64_t ticks, const std::function<bool()>& stop) {
+StepsReport SceneStepper::step(SceneState& state, const SceneInputs& inputs, std::int64_t ticks,
+                               const std::function<bool()>& stop) {
   if (state.baselines && (pushes(inputs) || isSaid(inputs.gravity))) {
     throw InputError(
-        fmt::format("{}: a finger of this scene is rendered as published (\"method\"), which knows no forces on bodies and no other "
+        fmt::format("{}: a finger of this scene is rendered as published (\"method\"), which knows no forces on bodies "
+                    "and no other "
                     "gravity. Leave them out, or take the method \"proxy\".",
                     model_.scene.file));
   }
@@ -117,7 +131,8 @@ StepsReport SceneStepper::step(SceneState& state, std::int64_t ticks, const std:
   return run(state, nullptr, ticks, stop);
 }
 
-StepsReport SceneStepper::run(SceneState& state, const SceneInputs* inputs, std::int64_t ticks, const std::function<bool()>& stop) {
+StepsReport SceneStepper::run(SceneState& state, const SceneInputs* inputs, std::int64_t ticks,
+                              const std::function<bool()>& stop) {
   constexpr std::int64_t kAsk = 1000;  // about a millisecond of a pinch
   engine::AppliedForces applied;
   if (inputs && pushes(*inputs)) applied.forces = inputs->body_force;
@@ -128,9 +143,9 @@ StepsReport SceneStepper::run(SceneState& state, const SceneInputs* inputs, std:
     tellFingers(state, inputs, ticks - all.ticks);
     tellBodies(state, inputs);
     tellDrives(state, inputs);
-    const engine::StepReport one = state.baselines
-                                       ? state.baselines->step(model_.grasp, state.grasp, *scratch_, fingers_, motions_, controls_)
-                                       : grasp::step(model_.grasp, state.grasp, *scratch_, fingers_, motions_, applied, controls_);
+    const engine::StepReport one =
+        state.baselines ? state.baselines->step(model_.grasp, state.grasp, *scratch_, fingers_, motions_, controls_)
+                        : grasp::step(model_.grasp, state.grasp, *scratch_, fingers_, motions_, applied, controls_);
     ++all.ticks;
     all.status |= one.status;
     all.contacts = one.contacts;

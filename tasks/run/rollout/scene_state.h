@@ -41,7 +41,7 @@ struct SceneState {
 
   grasp::GraspState grasp;
   std::optional<grasp::BaselineFingers> baselines;  // where some finger is rendered as published
-  std::vector<Vec3> held;                           // where a finger's device is to stay [m]; NaN: it follows the scene's trajectory
+  std::vector<Vec3> held;  // where a finger's device is to stay [m]; NaN: it follows the scene's trajectory
 
   double time() const { return grasp.world.time; }
 };
@@ -49,32 +49,35 @@ struct SceneState {
 // As of its world (quantity.h).
 std::string hashText(const SceneState& state);
 
-// Places body `body` anew: pose X_WB, velocity of its centre of mass [m/s], angular velocity [rad/s]. What its contacts remembered is forgotten.
-// The quaternion is normalised. Throws InputError when a value isn't finite, the quaternion is zero, the body can't have a velocity, or a tree of
-// joints places it (placeJoint) or stands on it.
+// Places body `body` anew: pose X_WB, velocity of its centre of mass [m/s], angular velocity [rad/s]. What its contacts
+// remembered is forgotten. The quaternion is normalised. Throws InputError when a value isn't finite, the quaternion is
+// zero, the body can't have a velocity, or a tree of joints places it (placeJoint) or stands on it.
 void placeBody(const SceneModel& model, SceneState& state, int body, const engine::BodyStart& start);
 
 // Coordinate of `joint`, a place in SceneModel::joints, and its rate [rad, rad/s] of a pivot, [m, m/s] of a slider.
 double jointPosition(const SceneModel& model, const SceneState& state, int joint);
 double jointVelocity(const SceneModel& model, const SceneState& state, int joint);
 
-// Sets both; what the joint carries goes along, and what follows it by a coupling. All contacts forget what they remembered. Throws InputError, and
-// changes nothing, when a number isn't finite, the position is beyond the joint's stops, the joint follows another one, or is one of a loop of bodies.
+// Sets both; what the joint carries goes along, and what follows it by a coupling. All contacts forget what they
+// remembered. Throws InputError, and changes nothing, when a number isn't finite, the position is beyond the joint's
+// stops, the joint follows another one, or is one of a loop of bodies.
 void placeJoint(const SceneModel& model, SceneState& state, int joint, double position, double velocity);
 
 // Inputs that a caller may give in place of the scene's trajectories. NaN: not said.
 struct SceneInputs {
   explicit SceneInputs(const SceneModel& model);  // nothing is said
 
-  std::vector<Vec3> finger_place;                   // of each device at the end of the step [m]; NaN: SceneState::held, else the trajectory
-  std::vector<Vec3> finger_velocity;                // at its end [m/s]; NaN: of the way from where the device was
-  std::vector<Eigen::Vector4d> finger_turn;         // orientation of F: quaternion w, x, y, z; NaN: the trajectory's
-  std::vector<Vec3> finger_force;                   // on each proxy, besides the scene's [N]
-  std::vector<engine::BodyForce> body_force;        // one per body
-  std::vector<std::array<double, 7>> motion_place;  // of driven bodies: x, y, z, qw, qx, qy, qz; NaN: the scene's trajectory
-  std::vector<std::array<double, 6>> motion_rate;   // of their origins [m/s], and angular [rad/s]
-  std::vector<double> drive_target;                 // what each drive is told, all through the step; NaN: what the scene tells it
-  Vec3 gravity;                                     // [m/s^2]; NaN: the scene's
+  // of each device at the end of the step [m]; NaN: SceneState::held, else the trajectory
+  std::vector<Vec3> finger_place;
+  std::vector<Vec3> finger_velocity;          // at its end [m/s]; NaN: of the way from where the device was
+  std::vector<Eigen::Vector4d> finger_turn;   // orientation of F: quaternion w, x, y, z; NaN: the trajectory's
+  std::vector<Vec3> finger_force;             // on each proxy, besides the scene's [N]
+  std::vector<engine::BodyForce> body_force;  // one per body
+  // of driven bodies: x, y, z, qw, qx, qy, qz; NaN: the scene's trajectory
+  std::vector<std::array<double, 7>> motion_place;
+  std::vector<std::array<double, 6>> motion_rate;  // of their origins [m/s], and angular [rad/s]
+  std::vector<double> drive_target;  // what each drive is told, all through the step; NaN: what the scene tells it
+  Vec3 gravity;                      // [m/s^2]; NaN: the scene's
 };
 
 // Sum of several ticks.
@@ -90,10 +93,11 @@ class SceneStepper {
  public:
   explicit SceneStepper(const SceneModel& model);
 
-  // `ticks` >= 1 ticks. A device that is told its place goes there evenly over them. Ends early after a tick whose state isn't finite, or when `stop`,
-  // asked every thousand ticks, says so. Allocates nothing. Throws InputError, before it begins, for forces on bodies or another gravity where fingers
-  // are rendered as published: those take none.
-  StepsReport step(SceneState& state, const SceneInputs& inputs, std::int64_t ticks, const std::function<bool()>& stop = {});
+  // `ticks` >= 1 ticks. A device that is told its place goes there evenly over them. Ends early after a tick whose
+  // state isn't finite, or when `stop`, asked every thousand ticks, says so. Allocates nothing. Throws InputError,
+  // before it begins, for forces on bodies or another gravity where fingers are rendered as published: those take none.
+  StepsReport step(SceneState& state, const SceneInputs& inputs, std::int64_t ticks,
+                   const std::function<bool()>& stop = {});
   // The scene's trajectories, but for devices that are held.
   StepsReport step(SceneState& state, std::int64_t ticks, const std::function<bool()>& stop = {});
 

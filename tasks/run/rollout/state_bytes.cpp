@@ -10,15 +10,17 @@
 namespace pincer::tasks {
 namespace {
 
-// take(part) for every part of a state. The names are bound to all members: who adds one to a state is told here by the compiler to add it below.
+// take(part) for every part of a state. The names are bound to all members: who adds one to a state is
+// told here by the compiler to add it below.
 template <class Grasp, class Take>
 void eachPart(Grasp& grasp, const Take& take) {
   auto& [world, followed, fingers] = grasp;
   auto& [per_finger, colliders, gaps, trackers] = followed;
-  auto& [time, tick, parts, h_last, bodies, driven_w_W, points, tree_q, tree_v, controls, drives, brakes, contacts, contact_count] = world;
+  auto& [time, tick, parts, h_last, bodies, driven_w_W, points, tree_q, tree_v, controls, drives, brakes, contacts,
+         contact_count] = world;
   take(time), take(tick), take(parts), take(h_last), take(contact_count);
-  take(bodies), take(driven_w_W), take(points), take(tree_q), take(tree_v), take(controls), take(drives), take(brakes), take(contacts),
-      take(per_finger), take(colliders), take(gaps), take(trackers), take(fingers);
+  take(bodies), take(driven_w_W), take(points), take(tree_q), take(tree_v), take(controls), take(drives), take(brakes),
+      take(contacts), take(per_finger), take(colliders), take(gaps), take(trackers), take(fingers);
 }
 
 std::string heading() { return fmt::format("pincer state {} {}\n", kBuildInfo.version, kBuildInfo.sources); }
@@ -52,8 +54,10 @@ struct Reader {
   void operator()(std::vector<Item>& items) const {
     std::uint64_t count = 0;
     (*this)(count);
-    if (count != items.size()) throw InputError("a pickled state is one of another model. Give it the model that it was pickled with.");
-    // Items are numbers and fixed-size vectors and quaternions of numbers; Eigen's have constructors, for which alone g++ would warn.
+    if (count != items.size())
+      throw InputError("a pickled state is one of another model. Give it the model that it was pickled with.");
+    // Items are numbers and fixed-size vectors and quaternions of numbers; Eigen's have
+    // constructors, for which alone g++ would warn.
     take(static_cast<void*>(items.data()), items.size() * sizeof(Item));
   }
 };
@@ -61,7 +65,8 @@ struct Reader {
 }  // namespace
 
 std::string bytesOf(const SceneState& state) {
-  if (state.baselines) throw InputError("a state whose fingers are rendered as published (\"method\") can't be pickled; copy() it.");
+  if (state.baselines)
+    throw InputError("a state whose fingers are rendered as published (\"method\") can't be pickled; copy() it.");
   std::string bytes = heading();
   eachPart(state.grasp, Writer{bytes});
   Writer{bytes}(state.held);
@@ -72,14 +77,16 @@ void setFromBytes(SceneState& state, std::string_view bytes) {
   const std::string mine = heading();
   if (!bytes.starts_with(mine)) {
     const std::string_view theirs = bytes.substr(0, std::min<std::size_t>(bytes.find('\n'), 60));
-    throw InputError(fmt::format("a pickled state is of another build ({}; this is {}). Bits may differ, so it isn't read.", theirs,
-                                 mine.substr(0, mine.size() - 1)));
+    throw InputError(
+        fmt::format("a pickled state is of another build ({}; this is {}). Bits may differ, so it isn't read.", theirs,
+                    mine.substr(0, mine.size() - 1)));
   }
   bytes.remove_prefix(mine.size());
   SceneState read = state;
   eachPart(read.grasp, Reader{bytes});
   Reader{bytes}(read.held);
-  if (!bytes.empty()) throw InputError("a pickled state is longer than one of this model. Give it the model that it was pickled with.");
+  if (!bytes.empty())
+    throw InputError("a pickled state is longer than one of this model. Give it the model that it was pickled with.");
   state = std::move(read);
 }
 

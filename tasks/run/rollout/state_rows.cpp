@@ -19,7 +19,8 @@ void writeRates(const SceneModel& model, const SceneState& state, std::span<doub
   }
 }
 
-void writeJoints(const SceneModel& model, const SceneState& state, std::span<double> positions, std::span<double> velocities) {
+void writeJoints(const SceneModel& model, const SceneState& state, std::span<double> positions,
+                 std::span<double> velocities) {
   for (std::size_t i = 0; i < model.joints.size(); ++i) {
     positions[i] = jointPosition(model, state, static_cast<int>(i));
     velocities[i] = jointVelocity(model, state, static_cast<int>(i));

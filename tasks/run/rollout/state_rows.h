@@ -11,7 +11,8 @@ void writePlaces(const SceneModel& model, const SceneState& state, std::span<dou
 // v_W of the centre of mass [m/s] and w_W [rad/s] per body.
 void writeRates(const SceneModel& model, const SceneState& state, std::span<double> out);
 // Coordinates of the pivots and sliders [rad, m], and their rates [rad/s, m/s].
-void writeJoints(const SceneModel& model, const SceneState& state, std::span<double> positions, std::span<double> velocities);
+void writeJoints(const SceneModel& model, const SceneState& state, std::span<double> positions,
+                 std::span<double> velocities);
 // Time, places, rates, joints (rollout.h).
 void writeStateRow(const SceneModel& model, const SceneState& state, std::span<double> out);
 

@@ -15,7 +15,8 @@ namespace {
 
 const BuiltinScene* findBuiltin(std::string_view name) {
   const auto scenes = builtinScenes();
-  const auto found = std::find_if(scenes.begin(), scenes.end(), [&](const BuiltinScene& scene) { return scene.name == name; });
+  const auto found =
+      std::find_if(scenes.begin(), scenes.end(), [&](const BuiltinScene& scene) { return scene.name == name; });
   return found == scenes.end() ? nullptr : &*found;
 }
 
@@ -53,7 +54,8 @@ bool isFile(const std::string& path_or_name) {
 }  // namespace
 
 NamedJson parseSceneOrBuiltin(const std::string& path_or_name) {
-  if (isRobotFile(path_or_name)) return {path_or_name, parseJson(sceneText(path_or_name), path_or_name + " (as a scene)")};
+  if (isRobotFile(path_or_name))
+    return {path_or_name, parseJson(sceneText(path_or_name), path_or_name + " (as a scene)")};
   if (isFile(path_or_name)) return {path_or_name, readJson(path_or_name, kSceneFile)};
   return parseBuiltin(path_or_name);
 }

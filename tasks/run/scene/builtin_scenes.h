@@ -1,5 +1,5 @@
-// builtin_scenes: the scenes of tasks/scenes, which the program carries with it, so that verify, benchmarks and `pincer sim NAME` find them
-// wherever it is installed.
+// builtin_scenes: the scenes of tasks/scenes, which the program carries with it, so that verify, benchmarks and `pincer
+// sim NAME` find them wherever it is installed.
 #pragma once
 #include <span>
 #include <string>
@@ -25,7 +25,8 @@ std::span<const BuiltinScene> builtinScenes();
 // Throws InputError with the names when there is none of this name.
 Scene readBuiltinScene(std::string_view name);
 
-// The path of a scene or robot (.xml), or the name of a built-in scene: what a user gives to `sim` and `plan`. A file of that path wins. Throws InputError.
+// The path of a scene or robot (.xml), or the name of a built-in scene: what a user gives to `sim` and `plan`. A
+// file of that path wins. Throws InputError.
 Scene readSceneOrBuiltin(const std::string& path_or_name);
 
 // The same, not yet read (sceneOf), and what it is called in messages.

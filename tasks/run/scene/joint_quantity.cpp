@@ -14,12 +14,15 @@ const engine::WorldScratch& world(M m) { return grasp::worldOf(m.scratch); }
 double position(M m, I i) { return engine::jointPosition(m.model.world, m.state.world, static_cast<int>(i)); }
 double velocity(M m, I i) { return engine::jointVelocity(m.model.world, m.state.world, static_cast<int>(i)); }
 engine::JointReport joint(M m, I i) { return engine::jointAt(m.model.world, world(m), static_cast<int>(i)); }
-engine::JointLoad load(M m, I i) { return engine::jointLoadAt(m.model.world, m.state.world, world(m), static_cast<int>(i)); }
+engine::JointLoad load(M m, I i) {
+  return engine::jointLoadAt(m.model.world, m.state.world, world(m), static_cast<int>(i));
+}
 // The share of the load along or about the joint's axis.
 double force(M m, I i) {
   const engine::JointLoad all = load(m, i);
-  return m.model.world.joints[static_cast<I>(m.model.world.joint_places[i].joint)].kind == engine::JointKind::kSlider ? all.f_J.z()
-                                                                                                                      : all.moment_J.z();
+  return m.model.world.joints[static_cast<I>(m.model.world.joint_places[i].joint)].kind == engine::JointKind::kSlider
+             ? all.f_J.z()
+             : all.moment_J.z();
 }
 engine::DriveReport drive(M m, I i) { return engine::driveAt(world(m), static_cast<int>(i)); }
 

@@ -19,7 +19,8 @@ struct PathStep {
 };
 
 [[noreturn]] void refusePath(std::string_view path) {
-  throw InputError(fmt::format("\"{}\" isn't the path of a number. Write it as messages do: bodies[0].material.mu_s", path));
+  throw InputError(
+      fmt::format("\"{}\" isn't the path of a number. Write it as messages do: bodies[0].material.mu_s", path));
 }
 
 // "[12]" at the front of `rest`, which is moved on.
@@ -91,7 +92,8 @@ const JsonValue& nearestTo(const JsonValue& file, std::string_view path) {
   const JsonValue* at = &file;
   for (const PathStep& step : stepsOf(path)) {
     const JsonValue* next = nullptr;
-    if (step.index && at->kind() == JsonValue::Kind::kArray && *step.index < at->array().size()) next = &at->array()[*step.index];
+    if (step.index && at->kind() == JsonValue::Kind::kArray && *step.index < at->array().size())
+      next = &at->array()[*step.index];
     if (!step.index && at->kind() == JsonValue::Kind::kObject) next = at->find(step.key);
     if (!next) break;
     at = next;
@@ -111,8 +113,8 @@ std::string scenePath(const JsonValue& scene, std::string_view path) {
       if (name) known.push_back(name->text());
     }
   }
-  throw InputError(
-      fmt::format("\"{}\": the scene has neither a key nor a body, joint or finger \"{}\".{}", path, first, suggestion(first, known)));
+  throw InputError(fmt::format("\"{}\": the scene has neither a key nor a body, joint or finger \"{}\".{}", path, first,
+                               suggestion(first, known)));
 }
 
 }  // namespace pincer::tasks

@@ -22,9 +22,11 @@ const grasp::FingerReport& felt(M m, I i) { return m.fingers[i]; }
 Vec2 place(M m, I i) { return grasp::placeOnPad(m.model.fingers[i], felt(m, i).touch); }
 
 constexpr std::array kWorld = {
-    QuantityKind{
-        "energy", "J",
-        [](M m, I) { return engine::kineticEnergy(m.model.world, m.state.world) + engine::potentialEnergy(m.model.world, m.state.world); }},
+    QuantityKind{"energy", "J",
+                 [](M m, I) {
+                   return engine::kineticEnergy(m.model.world, m.state.world) +
+                          engine::potentialEnergy(m.model.world, m.state.world);
+                 }},
     QuantityKind{"kinetic_energy", "J", [](M m, I) { return engine::kineticEnergy(m.model.world, m.state.world); }},
     QuantityKind{"potential_energy", "J", [](M m, I) { return engine::potentialEnergy(m.model.world, m.state.world); }},
 };

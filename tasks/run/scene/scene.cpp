@@ -16,7 +16,8 @@ namespace {
 
 const std::vector<JsonValue>& listOf(const JsonValue& json, std::size_t most) {
   const std::vector<JsonValue>& items = json.array();
-  if (items.size() > most) json.reject(fmt::format("has {} elements; a scene has at most {}. Leave some out.", items.size(), most));
+  if (items.size() > most)
+    json.reject(fmt::format("has {} elements; a scene has at most {}. Leave some out.", items.size(), most));
   return items;
 }
 
@@ -30,8 +31,10 @@ void readSolver(const JsonValue& json, engine::WorldOptions& options) {
   if (const JsonValue* v = json.find("tolerance")) options.solver.tolerance = v->number(ranges::kTolerance);
   if (const JsonValue* v = json.find("max_contacts"))
     options.max_contacts = v->integer(4, 65536, "A whole number of contacts; left out, the scene's bodies decide.");
-  if (const JsonValue* v = json.find("position_tolerance")) options.position_tolerance = v->number(ranges::kPositionTolerance);
-  if (const JsonValue* v = json.find("max_parts")) options.max_parts = v->integer(2, 1024, "How many parts a tick may be cut into.");
+  if (const JsonValue* v = json.find("position_tolerance"))
+    options.position_tolerance = v->number(ranges::kPositionTolerance);
+  if (const JsonValue* v = json.find("max_parts"))
+    options.max_parts = v->integer(2, 1024, "How many parts a tick may be cut into.");
   if (const JsonValue* v = json.find("accuracy")) options.solver.accuracy = v->number(ranges::kAccuracy);
   if (const JsonValue* v = json.find("budget")) options.solver.budget = v->number(ranges::kBudget);
   if (const JsonValue* v = json.find("sleep")) options.sleep = v->boolean();
@@ -105,18 +108,21 @@ void readBodies(const JsonValue& json, SceneNames& names, Scene& scene) {
 void tellDrives(const JsonValue& json, const std::string& prefix, Scene& scene) {
   std::vector<std::string_view> names;
   for (const SceneDrive& drive : scene.drives) {
-    if (drive.model.name.rfind(prefix, 0) == 0) names.push_back(std::string_view(drive.model.name).substr(prefix.size()));
+    if (drive.model.name.rfind(prefix, 0) == 0)
+      names.push_back(std::string_view(drive.model.name).substr(prefix.size()));
   }
   json.allowOnly(names);
   for (SceneDrive& drive : scene.drives) {
     if (drive.model.name.rfind(prefix, 0) != 0) continue;
-    if (const JsonValue* v = json.find(std::string_view(drive.model.name).substr(prefix.size()))) readDriveControl(*v, drive);
+    if (const JsonValue* v = json.find(std::string_view(drive.model.name).substr(prefix.size())))
+      readDriveControl(*v, drive);
   }
 }
 
 // Its bodies, joints and drives; in messages all of them stand where the robot is named.
 void addRobot(const JsonValue& json, SceneNames& names, Scene& scene) {
-  const std::array lines = {&scene.body_lines, &scene.joint_lines, &scene.coupling_lines, &scene.drive_lines, &scene.pair_lines};
+  const std::array lines = {&scene.body_lines, &scene.joint_lines, &scene.coupling_lines, &scene.drive_lines,
+                            &scene.pair_lines};
   std::array<std::ptrdiff_t, lines.size()> before;
   for (std::size_t i = 0; i < lines.size(); ++i) before[i] = std::ssize(*lines[i]);
   const RobotJson robot = readRobot(json, scene);
@@ -150,11 +156,13 @@ Scene sceneOf(const JsonValue& json, const std::string& name) {
   if (const JsonValue* v = json.find("fingers")) {
     for (const JsonValue& finger : listOf(*v, kMostFingers)) scene.fingers.push_back(readFinger(finger, names, scene));
   }
-  if (scene.bodies.empty() && scene.fingers.empty()) json.at("bodies").reject("is empty, and there is no finger: nothing could happen.");
+  if (scene.bodies.empty() && scene.fingers.empty())
+    json.at("bodies").reject("is empty, and there is no finger: nothing could happen.");
   if (const JsonValue* v = json.find("camera")) scene.camera = readCamera(*v);
   if (const JsonValue* v = json.find("record")) scene.record = readRecording(*v, scene);
   if (const JsonValue* v = json.find("expect")) {
-    for (const JsonValue& expectation : listOf(*v, kMostQuantities)) scene.expectations.push_back(readExpectation(expectation, scene));
+    for (const JsonValue& expectation : listOf(*v, kMostQuantities))
+      scene.expectations.push_back(readExpectation(expectation, scene));
   }
   return scene;
 }
@@ -175,7 +183,8 @@ void addPair(const ScenePair& pair, engine::WorldBuilder& builder) {
   }
 }
 
-// Runs `build`, which makes part `index` of the world; what is said against it gets the scene's name and the part's line.
+// Runs `build`, which makes part `index` of the world; what is said against it
+// gets the scene's name and the part's line.
 template <class Build>
 auto atLine(const Scene& scene, const std::vector<int>& lines, std::size_t index, const Build& build) {
   try {
@@ -190,13 +199,16 @@ auto atLine(const Scene& scene, const std::vector<int>& lines, std::size_t index
 
 grasp::GraspModel buildWorld(const Scene& scene) {
   engine::WorldBuilder builder = atLine(scene, {}, 0, [&] { return engine::WorldBuilder(scene.options); });
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) atLine(scene, scene.body_lines, i, [&] { builder.addBody(scene.bodies[i]); });
-  for (std::size_t i = 0; i < scene.joints.size(); ++i) atLine(scene, scene.joint_lines, i, [&] { builder.addJoint(scene.joints[i]); });
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    atLine(scene, scene.body_lines, i, [&] { builder.addBody(scene.bodies[i]); });
+  for (std::size_t i = 0; i < scene.joints.size(); ++i)
+    atLine(scene, scene.joint_lines, i, [&] { builder.addJoint(scene.joints[i]); });
   for (std::size_t i = 0; i < scene.couplings.size(); ++i)
     atLine(scene, scene.coupling_lines, i, [&] { builder.addCoupling(scene.couplings[i]); });
   for (std::size_t i = 0; i < scene.drives.size(); ++i)
     atLine(scene, scene.drive_lines, i, [&] { builder.addDrive(scene.drives[i].model); });
-  for (std::size_t i = 0; i < scene.pairs.size(); ++i) atLine(scene, scene.pair_lines, i, [&] { addPair(scene.pairs[i], builder); });
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i)
+    atLine(scene, scene.pair_lines, i, [&] { addPair(scene.pairs[i], builder); });
   std::vector<grasp::FingerModel> fingers;
   for (const SceneFinger& finger : scene.fingers) fingers.push_back(finger.model);
   // Groups of bodies that joints make are found out last.

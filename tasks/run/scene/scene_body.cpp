@@ -15,7 +15,8 @@ engine::Material readMaterial(const JsonValue& json) {
   if (const JsonValue* v = json.find("mu_s")) material.mu_s = v->number(ranges::kFriction);
   material.mu_d = material.mu_s;
   if (const JsonValue* v = json.find("mu_d")) {
-    material.mu_d = v->number({.min = 0, .max = material.mu_s, .remedy = "Dynamic friction isn't larger than static friction (mu_s)."});
+    material.mu_d = v->number(
+        {.min = 0, .max = material.mu_s, .remedy = "Dynamic friction isn't larger than static friction (mu_s)."});
   }
   if (const JsonValue* v = json.find("restitution")) material.restitution = v->number(ranges::kRestitution);
   if (const JsonValue* v = json.find("torsion_radius")) material.torsion_radius = v->number(ranges::kTorsionRadius);
@@ -62,7 +63,8 @@ namespace {
 
 bool hasSupport(const engine::BodySpec& spec) {
   if (spec.shapes.empty()) return isSupport(spec.shape);
-  return std::any_of(spec.shapes.begin(), spec.shapes.end(), [](const engine::ColliderSpec& part) { return isSupport(part.shape); });
+  return std::any_of(spec.shapes.begin(), spec.shapes.end(),
+                     [](const engine::ColliderSpec& part) { return isSupport(part.shape); });
 }
 
 bool readDynamic(const JsonValue& json, bool has_support) {
@@ -73,13 +75,15 @@ bool readDynamic(const JsonValue& json, bool has_support) {
     return false;
   }
   if (!has_support) return !(fixed && fixed->boolean());
-  if (fixed && !fixed->boolean()) fixed->reject("doesn't go with this shape: half-spaces and dishes never move. Remove the key.");
+  if (fixed && !fixed->boolean())
+    fixed->reject("doesn't go with this shape: half-spaces and dishes never move. Remove the key.");
   return false;
 }
 
 void refuseWeight(const JsonValue& json, bool driven) {
-  const std::string_view because = driven ? "doesn't go with a trajectory, which the body follows whatever touches it. Remove the key."
-                                          : "doesn't go with a body that never moves. Remove the key.";
+  const std::string_view because =
+      driven ? "doesn't go with a trajectory, which the body follows whatever touches it. Remove the key."
+             : "doesn't go with a body that never moves. Remove the key.";
   for (const std::string_view key : {"mass", "density", "inertia"}) refuse(json, key, because);
   const JsonValue* shapes = json.find("shapes");
   if (!shapes) return;
@@ -103,8 +107,8 @@ double readMass(const JsonValue& json, const engine::BodySpec& spec) {
   };
   for (const engine::ColliderSpec& part : spec.shapes) given += part.mass;
   const std::optional<double> weight = readWeight(json, volume);
-  const bool has_each =
-      !spec.shapes.empty() && std::all_of(spec.shapes.begin(), spec.shapes.end(), [](const auto& part) { return part.mass > 0; });
+  const bool has_each = !spec.shapes.empty() && std::all_of(spec.shapes.begin(), spec.shapes.end(),
+                                                            [](const auto& part) { return part.mass > 0; });
   if (!weight && !has_each) json.reject("lacks the key \"mass\" [kg] (or \"density\" [kg/m^3], or \"static\": true).");
   return !weight ? given : json.find("density") ? given + *weight : *weight;
 }
@@ -169,7 +173,8 @@ ScenePair readPair(const JsonValue& json, const SceneNames& names, const Scene& 
   if (const JsonValue* v = json.find("touch")) pair.touch = v->boolean();
   const JsonValue* material = json.find("material");
   if (!pair.touch && material) material->reject("doesn't go with two that never touch. Remove the key.");
-  if (pair.touch && !material) json.reject("lacks the key \"material\", what the two are to each other (or \"touch\": false).");
+  if (pair.touch && !material)
+    json.reject("lacks the key \"material\", what the two are to each other (or \"touch\": false).");
   if (material) pair.material = readMaterial(*material);
   return pair;
 }

@@ -38,10 +38,12 @@ std::vector<engine::DriveTerm> readTerms(const JsonValue& json, const Scene& sce
   return terms;
 }
 
-std::vector<engine::DriveTerm> readWhatItMoves(const JsonValue& json, const std::vector<SceneTendon>& tendons, const Scene& scene) {
+std::vector<engine::DriveTerm> readWhatItMoves(const JsonValue& json, const std::vector<SceneTendon>& tendons,
+                                               const Scene& scene) {
   const JsonValue* const joint = json.find("joint");
   const JsonValue* const tendon = json.find("tendon");
-  if ((joint != nullptr) == (tendon != nullptr)) json.reject("needs either \"joint\" or \"tendon\": what the drive moves.");
+  if ((joint != nullptr) == (tendon != nullptr))
+    json.reject("needs either \"joint\" or \"tendon\": what the drive moves.");
   if (joint) return {{readCoordinate(*joint, scene), 1}};
   std::vector<std::string_view> known;
   for (const SceneTendon& t : tendons) known.push_back(t.name);
@@ -65,21 +67,26 @@ void readControlRange(const JsonValue& json, engine::DriveModel& drive) {
 // Keys that each type takes besides its control.
 void readLaw(const JsonValue& json, engine::DriveModel& drive) {
   using Control = engine::DriveModel::Control;
-  const std::size_t type = json.at("type", "How it drives: position, velocity, motor or affine.").oneOf(keys::kDriveTypes);
+  const std::size_t type =
+      json.at("type", "How it drives: position, velocity, motor or affine.").oneOf(keys::kDriveTypes);
   const bool is_position = type == 0, is_velocity = type == 1, is_affine = type == 3;
   drive.control = is_position ? Control::kPosition : is_velocity ? Control::kVelocity : Control::kForce;
-  const auto take = [&](std::string_view key, bool goes, const NumberRule& rule, std::string_view otherwise, double& out) {
+  const auto take = [&](std::string_view key, bool goes, const NumberRule& rule, std::string_view otherwise,
+                        double& out) {
     const JsonValue* const v = json.find(key);
     if (v && !goes) v->reject(otherwise);
     if (v) out = v->number(rule);
   };
   take("stiffness", is_position || is_affine, ranges::kJointStiffness,
        "goes with drives to a position and affine ones only. Remove the key.", drive.stiffness);
-  take("damping", type != 2, ranges::kJointDamping, "doesn't go with a motor, which is a force: give it to the joint.", drive.damping);
-  take("gain", !is_position && !is_velocity, ranges::kDriveGain, "goes with motors and affine drives only: force per unit of the control.",
-       drive.gain);
-  take("offset", is_affine, ranges::kDriveForce, "goes with affine drives only: a force that is always there.", drive.offset);
-  if (is_position && !(drive.stiffness > 0)) json.reject("needs \"stiffness\", above 0: how hard it pulls towards the position.");
+  take("damping", type != 2, ranges::kJointDamping, "doesn't go with a motor, which is a force: give it to the joint.",
+       drive.damping);
+  take("gain", !is_position && !is_velocity, ranges::kDriveGain,
+       "goes with motors and affine drives only: force per unit of the control.", drive.gain);
+  take("offset", is_affine, ranges::kDriveForce, "goes with affine drives only: a force that is always there.",
+       drive.offset);
+  if (is_position && !(drive.stiffness > 0))
+    json.reject("needs \"stiffness\", above 0: how hard it pulls towards the position.");
   if (is_velocity && !(drive.damping > 0)) json.reject("needs \"damping\", above 0: force per rate that it is off by.");
 }
 
@@ -89,7 +96,8 @@ Trajectory readControl(const JsonValue& json) {
   for (const JsonValue& keyframe : json.at("keyframes", "What the drive is told at which time.").array()) {
     keyframe.allowOnly(keys::kDriveKeyframe);
     const JsonValue& time = keyframe.at("time", "In seconds.");
-    const double value = keyframe.at("value", "A position, a rate or a force, as the drive's type has it.").number(ranges::kDriveControl);
+    const double value = keyframe.at("value", "A position, a rate or a force, as the drive's type has it.")
+                             .number(ranges::kDriveControl);
     points.push_back({time.number(ranges::kTime), {value, 0, 0}, Vec3::Zero()});
     requireOnward(points, ranges::kDriveControl.max, time);
   }
@@ -112,17 +120,20 @@ engine::CouplingModel readCoupling(const JsonValue& json, const Scene& scene) {
   if (coefficients.size() < 2 || coefficients.size() > kMostCoefficients)
     polynomial->reject(fmt::format("must have 2 to {} numbers: c0 + c1 q + c2 q^2 + ..", kMostCoefficients));
   coupling.polynomial.fill(0);
-  for (std::size_t k = 0; k < coefficients.size(); ++k) coupling.polynomial[k] = coefficients[k].number(ranges::kCoefficient);
+  for (std::size_t k = 0; k < coefficients.size(); ++k)
+    coupling.polynomial[k] = coefficients[k].number(ranges::kCoefficient);
   return coupling;
 }
 
 SceneTendon readTendon(const JsonValue& json, SceneNames& names, const Scene& scene) {
   json.allowOnly(keys::kTendon);
   json.at("name", "Drives go by it.");
-  return {names.readNext(json, ""), readTerms(json.at("joints", "By how much each joint counts: {\"left\": 0.5, \"right\": 0.5}."), scene)};
+  return {names.readNext(json, ""),
+          readTerms(json.at("joints", "By how much each joint counts: {\"left\": 0.5, \"right\": 0.5}."), scene)};
 }
 
-SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tendons, SceneNames& names, const Scene& scene) {
+SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tendons, SceneNames& names,
+                     const Scene& scene) {
   json.allowOnly(keys::kDrive);
   SceneDrive drive;
   drive.model.name = names.readNext(json, fmt::format("drive{}", scene.drives.size()));
@@ -139,8 +150,9 @@ SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tend
 
 void readDriveControl(const JsonValue& json, SceneDrive& drive) {
   drive.moves = json.kind() == JsonValue::Kind::kObject;
-  drive.control =
-      drive.moves ? readControl(json) : Trajectory::throughKeyframes({{0, {json.number(ranges::kDriveControl), 0, 0}, Vec3::Zero()}});
+  drive.control = drive.moves
+                      ? readControl(json)
+                      : Trajectory::throughKeyframes({{0, {json.number(ranges::kDriveControl), 0, 0}, Vec3::Zero()}});
 }
 
 void driveControls(const Scene& scene, double time, std::span<engine::DriveInput> controls) {

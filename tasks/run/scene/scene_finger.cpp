@@ -20,7 +20,8 @@ void requireHeldAxes(const JsonValue& json, const engine::DrivenPointModel& coup
   for (int axis = 0; axis < 3; ++axis) {
     if (coupling.locked[axis] || coupling.mass + coupling.stiffness[axis] > 0) continue;
     json.reject(
-        fmt::format("has neither mass nor stiffness along {}: nothing says where it is. Give it a mass or a stiffness, or lock the axis.",
+        fmt::format("has neither mass nor stiffness along {}: nothing says where it is. Give it a mass or a stiffness, "
+                    "or lock the axis.",
                     kAxes[static_cast<std::size_t>(axis)]));
   }
 }
@@ -46,7 +47,8 @@ void requireOneKindOfAxes(const JsonValue& json) {
     if (has(v, JsonValue::Kind::kArray))
       v->reject("is along the world's axes, but the other one along the contact's. Give both in one way.");
   }
-  if (const JsonValue* v = json.find("locked")) v->reject("locks axes of the world, but the coupling is along the contact's. Remove one.");
+  if (const JsonValue* v = json.find("locked"))
+    v->reject("locks axes of the world, but the coupling is along the contact's. Remove one.");
 }
 
 // Damped within some ticks unless it is said how.
@@ -57,7 +59,8 @@ void readTurn(const JsonValue& json, engine::DrivenPointModel& coupling) {
   coupling.turn_damping = damping ? damping->number(ranges::kTurn) : kUsualDamping * coupling.turn_stiffness;
   if (!(coupling.turn_stiffness + coupling.turn_damping > 0)) return;
   for (const char* key : {"twist_stiffness", "twist_damping"}) {
-    if (const JsonValue* v = json.find(key)) v->reject("is about the contact normal, but a turn_stiffness is about every axis. Keep one.");
+    if (const JsonValue* v = json.find(key))
+      v->reject("is about the contact normal, but a turn_stiffness is about every axis. Keep one.");
   }
 }
 
@@ -65,8 +68,10 @@ void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
   engine::DrivenPointModel& coupling = finger.coupling;
   requireOneKindOfAxes(json);
   if (const JsonValue* v = json.find("mass")) coupling.mass = v->number(ranges::kProxyMass);
-  if (const JsonValue* v = json.find("stiffness")) readDirections(*v, ranges::kStiffness, coupling.stiffness, finger.along_normal);
-  if (const JsonValue* v = json.find("damping")) readDirections(*v, ranges::kDamping, coupling.damping, finger.along_normal);
+  if (const JsonValue* v = json.find("stiffness"))
+    readDirections(*v, ranges::kStiffness, coupling.stiffness, finger.along_normal);
+  if (const JsonValue* v = json.find("damping"))
+    readDirections(*v, ranges::kDamping, coupling.damping, finger.along_normal);
   if (const JsonValue* v = json.find("locked")) {
     for (const JsonValue& axis : v->array()) coupling.locked[static_cast<Eigen::Index>(axis.oneOf(kAxes))] = true;
   }
@@ -81,7 +86,8 @@ grasp::PressureGrid readTaxels(const JsonValue& json) {
   constexpr int kFewestTaxels = 2, kMostTaxels = 64;
   json.allowOnly(keys::kTaxels);
   const auto count = [&](const char* key) {
-    return json.at(key, "How many taxels that way.").integer(kFewestTaxels, kMostTaxels, "A fingerpad's sensor has 8 x 6.");
+    return json.at(key, "How many taxels that way.")
+        .integer(kFewestTaxels, kMostTaxels, "A fingerpad's sensor has 8 x 6.");
   };
   grasp::PressureGrid grid{.rows = count("rows"), .columns = count("columns")};
   if (const JsonValue* v = json.find("pitch")) grid.pitch = v->number(ranges::kTaxelPitch);
@@ -100,7 +106,8 @@ void readTipOf(const JsonValue& json, const Scene& scene, grasp::FingerModel& fi
   if (patch) finger.pad.patch_radius = patch->number(ranges::kPatch);
   if (modulus) finger.pad.modulus = modulus->number(ranges::kModulus);
   if (const JsonValue* v = json.find("taxels")) finger.taxels = readTaxels(*v);
-  if (const JsonValue* v = json.find("effective_radius")) finger.pad.effective_radius = v->number(ranges::kEffectiveRadius);
+  if (const JsonValue* v = json.find("effective_radius"))
+    finger.pad.effective_radius = v->number(ranges::kEffectiveRadius);
 }
 
 grasp::ArmPort readArm(const JsonValue& json) {
@@ -123,7 +130,8 @@ FingerPath readKeyframes(const JsonValue& json, const Vec3& rotation) {
     const JsonValue& time = keyframe.at("time", "In seconds.");
     const double t = time.number(ranges::kTime);
     if (const JsonValue* v = keyframe.find("rotation")) turn = v->vector(ranges::kRotation);
-    places.push_back({t, keyframe.at("position", "Where the finger is then [m].").vector(ranges::kCoordinate), Vec3::Zero()});
+    places.push_back(
+        {t, keyframe.at("position", "Where the finger is then [m].").vector(ranges::kCoordinate), Vec3::Zero()});
     turns.push_back({t, turn, Vec3::Zero()});
     requireOnward(places, ranges::kFastest, time);
     requireOnward(turns, ranges::kFastestSpin, time);
@@ -155,7 +163,8 @@ FingerPath readMotion(const JsonValue& json, const std::string& scene_file) {
   const Vec3 rotation = turn ? turn->vector(ranges::kRotation) : Vec3::Zero();
   if (trajectory) return readTrajectory(*trajectory, scene_file, rotation);
   if (!position) json.reject("needs \"position\" [m] for a finger that rests, or \"trajectory\".");
-  return {Trajectory::throughKeyframes({{0, position->vector(ranges::kCoordinate), Vec3::Zero()}}), constantTurn(rotation)};
+  return {Trajectory::throughKeyframes({{0, position->vector(ranges::kCoordinate), Vec3::Zero()}}),
+          constantTurn(rotation)};
 }
 
 }  // namespace
@@ -166,7 +175,8 @@ SceneFinger readFinger(const JsonValue& json, SceneNames& names, const Scene& sc
   finger.model.name = names.readNext(json, fmt::format("finger{}", scene.fingers.size()));
   readTipOf(json, scene, finger.model);
   readCoupling(json, finger.model);
-  if (const JsonValue* v = json.find("method")) finger.method = static_cast<grasp::FingerMethod>(v->oneOf(grasp::kFingerMethodNames));
+  if (const JsonValue* v = json.find("method"))
+    finger.method = static_cast<grasp::FingerMethod>(v->oneOf(grasp::kFingerMethodNames));
   if (const JsonValue* v = json.find("arm")) finger.model.arm = readArm(*v);
   const FingerPath path = readMotion(json, scene.file);
   finger.trajectory = path.place;

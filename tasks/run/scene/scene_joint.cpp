@@ -29,7 +29,8 @@ void readLimits(const JsonValue& json, engine::JointTraits& traits) {
     json.reject("must be [lower, upper], radians of a pivot or metres of a slider; null where there is no stop.");
   traits.lower = readLimit(json.array()[0], traits.lower);
   traits.upper = readLimit(json.array()[1], traits.upper);
-  if (!(traits.lower < traits.upper)) json.reject("leaves no way: the first must be less than the second. To hold it, make it a weld.");
+  if (!(traits.lower < traits.upper))
+    json.reject("leaves no way: the first must be less than the second. To hold it, make it a weld.");
 }
 
 // Forces along the free axis.
@@ -38,7 +39,8 @@ void readTraits(const JsonValue& json, engine::JointModel& joint) {
     const JsonValue* const v = json.find(key);
     if (!v) return;
     out = v->number(rule);
-    if (!hasAxis(joint)) v->reject("doesn't go with this type: only pivots and sliders have one free axis. Remove the key.");
+    if (!hasAxis(joint))
+      v->reject("doesn't go with this type: only pivots and sliders have one free axis. Remove the key.");
   };
   along("damping", ranges::kJointDamping, joint.damping);
   along("restitution", ranges::kRestitution, joint.traits.restitution);
@@ -52,19 +54,22 @@ void readTraits(const JsonValue& json, engine::JointModel& joint) {
   }
   const JsonValue* const limits = json.find("limits");
   if (limits) {
-    if (!hasAxis(joint)) limits->reject("doesn't go with this type: only pivots and sliders have stops. Remove the key.");
+    if (!hasAxis(joint))
+      limits->reject("doesn't go with this type: only pivots and sliders have stops. Remove the key.");
     readLimits(*limits, joint.traits);
   }
   const JsonValue* const start = json.find("start");
   if (joint.traits.start < joint.traits.lower || joint.traits.start > joint.traits.upper)
     (start ? start : limits)
         ->reject(
-            fmt::format("is beyond a stop: the joint starts at {:g}. The bodies' positions are those at \"start\".", joint.traits.start));
+            fmt::format("is beyond a stop: the joint starts at {:g}. The bodies' positions are those at \"start\".",
+                        joint.traits.start));
 }
 
 // By how much a's side of the joint is ahead of b's at the start.
 Pose wayAtStart(const engine::JointModel& joint) {
-  if (joint.kind == engine::JointKind::kPivot) return {quatFromRotationVector({0, 0, joint.traits.start}), Vec3::Zero()};
+  if (joint.kind == engine::JointKind::kPivot)
+    return {quatFromRotationVector({0, 0, joint.traits.start}), Vec3::Zero()};
   return {Quat::Identity(), {0, 0, joint.traits.start}};
 }
 
@@ -74,13 +79,14 @@ engine::JointModel readJoint(const JsonValue& json, SceneNames& names, const Sce
   json.allowOnly(keys::kJoint);
   engine::JointModel joint;
   joint.name = names.readNext(json, fmt::format("joint{}", scene.joints.size()));
-  joint.kind =
-      static_cast<engine::JointKind>(json.at("type", "What the joint leaves free: pivot, slider, ball or weld.").oneOf(keys::kJointTypes));
+  joint.kind = static_cast<engine::JointKind>(
+      json.at("type", "What the joint leaves free: pivot, slider, ball or weld.").oneOf(keys::kJointTypes));
   const JsonValue& body = json.at("body", "The body that it holds.");
   joint.a = names.bodyNamed(body, scene);
   const auto start = [&](int i) { return scene.starts[static_cast<std::size_t>(i)].X_WB; };
   if (!scene.bodies[static_cast<std::size_t>(joint.a)].dynamic)
-    body.reject("never moves by itself: a joint has nothing to hold. Name the moving body here, this one under \"to\".");
+    body.reject(
+        "never moves by itself: a joint has nothing to hold. Name the moving body here, this one under \"to\".");
   readTraits(json, joint);
   Pose X_WJ{readAxis(json), start(joint.a).p};
   if (const JsonValue* v = json.find("point")) X_WJ.p = v->vector(ranges::kCoordinate);
@@ -100,7 +106,8 @@ BodyFrame readFrame(const JsonValue& json, SceneNames& names, const Scene& scene
   BodyFrame frame;
   frame.name = names.readNext(json, fmt::format("frame{}", scene.frames.size()));
   frame.body = names.bodyNamed(json.at("body", "The body that carries it."), scene);
-  frame.X_BF = {quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)), readVector(json, "position", ranges::kCoordinate)};
+  frame.X_BF = {quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)),
+                readVector(json, "position", ranges::kCoordinate)};
   return frame;
 }
 

@@ -1,4 +1,5 @@
-// scene_keys: the words of the scene format, for its reader and for the test that compares them with docs/scene.schema.json.
+// scene_keys: the words of the scene format, for its reader and for the test that
+// compares them with docs/scene.schema.json.
 #pragma once
 #include <array>
 #include <string_view>
@@ -7,25 +8,27 @@ namespace pincer::tasks::keys {
 
 using Word = std::string_view;
 
-inline constexpr std::array<Word, 19> kScene = {"version", "description", "gravity", "tick",   "duration",  "solver",  "robots",
-                                                "bodies",  "combination", "pairs",   "joints", "couplings", "tendons", "drives",
-                                                "frames",  "fingers",     "record",  "expect", "camera"};
+inline constexpr std::array<Word, 19> kScene = {
+    "version", "description", "gravity", "tick",   "duration", "solver",  "robots", "bodies", "combination", "pairs",
+    "joints",  "couplings",   "tendons", "drives", "frames",   "fingers", "record", "expect", "camera"};
 inline constexpr std::array<Word, 4> kCamera = {"yaw", "pitch", "distance", "target"};
 inline constexpr std::array<Word, 7> kRobot = {"name", "file", "keyframe", "start", "drives", "position", "rotation"};
 inline constexpr std::array<Word, 8> kSolver = {"tolerance",          "accuracy",  "max_contacts", "contact_margin",
                                                 "position_tolerance", "max_parts", "sleep",        "budget"};
-inline constexpr std::array<Word, 13> kBody = {"name",    "shape",    "shapes",   "static",     "mass",     "density",
-                                               "inertia", "position", "rotation", "trajectory", "velocity", "angular_velocity",
-                                               "material"};
-inline constexpr std::array<Word, 9> kPart = {"name", "shape", "pieces", "position", "rotation", "mass", "density", "material", "collides"};
+inline constexpr std::array<Word, 13> kBody = {
+    "name",     "shape",      "shapes",   "static",           "mass",    "density", "inertia", "position",
+    "rotation", "trajectory", "velocity", "angular_velocity", "material"};
+inline constexpr std::array<Word, 9> kPart = {"name", "shape",   "pieces",   "position", "rotation",
+                                              "mass", "density", "material", "collides"};
 inline constexpr std::array<Word, 3> kPieces = {"file", "units", "scale"};
 inline constexpr std::array<Word, 2> kCollides = {"as", "with"};
 inline constexpr std::array<Word, 4> kInertia = {"center", "moments", "products", "rotation"};
 inline constexpr std::array<Word, 2> kCombinations = {"geometric_mean", "maximum"};
 inline constexpr std::array<Word, 1> kBodyTrajectory = {"keyframes"};
 inline constexpr std::array<Word, 3> kBodyKeyframe = {"time", "position", "rotation"};
-inline constexpr std::array<Word, 14> kJoint = {"name",        "type",      "body", "to",      "point",    "axis",     "limits",
-                                                "restitution", "stiffness", "rest", "damping", "friction", "armature", "start"};
+inline constexpr std::array<Word, 14> kJoint = {"name",    "type",     "body",        "to",        "point",
+                                                "axis",    "limits",   "restitution", "stiffness", "rest",
+                                                "damping", "friction", "armature",    "start"};
 inline constexpr std::array<Word, 3> kCoupling = {"joint", "follows", "polynomial"};
 inline constexpr std::array<Word, 2> kTendon = {"name", "joints"};
 inline constexpr std::array<Word, 12> kDrive = {"name", "joint",  "tendon", "type",    "stiffness", "damping",
@@ -36,7 +39,8 @@ inline constexpr std::array<Word, 2> kDriveKeyframe = {"time", "value"};
 inline constexpr std::array<Word, 4> kFrame = {"name", "body", "position", "rotation"};
 inline constexpr std::array<Word, 4> kJointTypes = {"pivot", "slider", "ball", "weld"};
 inline constexpr std::array<Word, 3> kPair = {"bodies", "touch", "material"};
-inline constexpr std::array<Word, 6> kMaterial = {"mu_s", "mu_d", "restitution", "torsion_radius", "rolling_radius", "stribeck_speed"};
+inline constexpr std::array<Word, 6> kMaterial = {"mu_s",           "mu_d",           "restitution",
+                                                  "torsion_radius", "rolling_radius", "stribeck_speed"};
 inline constexpr std::array<Word, 21> kFinger = {"name",
                                                  "radius",
                                                  "shape",
@@ -69,7 +73,8 @@ inline constexpr std::array<Word, 6> kPadTip = {"type", "points", "file", "units
 inline constexpr std::array<Word, 2> kTrajectory = {"keyframes", "csv"};
 inline constexpr std::array<Word, 3> kKeyframe = {"time", "position", "rotation"};
 inline constexpr std::array<Word, 2> kRecord = {"interval", "quantities"};
-inline constexpr std::array<Word, 7> kExpectation = {"quantity", "time", "relation", "value", "tolerance", "because", "hash"};
+inline constexpr std::array<Word, 7> kExpectation = {"quantity",  "time",    "relation", "value",
+                                                     "tolerance", "because", "hash"};
 inline constexpr std::array<Word, 3> kHashExpectation = {"hash", "time", "because"};
 
 inline constexpr std::array<Word, 9> kShapeTypes = {"sphere",     "box",  "capsule", "cylinder", "cylinder_with_flat",

@@ -12,8 +12,8 @@ Vec3 vectorOr(const JsonValue& json, std::string_view key, const NumberRule& rul
   return value ? value->vector(rule) : otherwise;
 }
 
-// Angular velocity of exp(a(t)) [rad/s]: J a', J = I + (1 - cos t)/t^2 [a] + (t - sin t)/t^3 [a]^2, t = |a|, [a] b = a x b.
-// Source: G. S. Chirikjian, Stochastic Models, Information Theory, and Lie Groups 2, 2012, eq. (10.86).
+// Angular velocity of exp(a(t)) [rad/s]: J a', J = I + (1 - cos t)/t^2 [a] + (t - sin t)/t^3 [a]^2, t = |a|, [a] b = a
+// x b. Source: G. S. Chirikjian, Stochastic Models, Information Theory, and Lie Groups 2, 2012, eq. (10.86).
 Vec3 angularVelocityOf(const Vec3& a, const Vec3& rate) {
   const double tt = a.squaredNorm();
   const double t = std::sqrt(tt);

@@ -14,7 +14,8 @@ bool isNameLetter(char c) { return std::isalnum(static_cast<unsigned char>(c)) |
 }  // namespace
 
 void requireName(const std::string& name, const JsonValue& place) {
-  if (name.empty() || !std::all_of(name.begin(), name.end(), isNameLetter)) place.reject("isn't a name: letters, digits, - and _ only.");
+  if (name.empty() || !std::all_of(name.begin(), name.end(), isNameLetter))
+    place.reject("isn't a name: letters, digits, - and _ only.");
   if (name.size() > kLongestName)
     place.reject(fmt::format("is too long for a name: it has {} letters, at most {} go.", name.size(), kLongestName));
 }
@@ -25,8 +26,9 @@ std::string SceneNames::readNext(const JsonValue& json, const std::string& other
   const JsonValue& place = value ? *value : json;
   requireName(name, place);
   if (!index_.emplace(name, static_cast<int>(index_.size())).second) {
-    place.reject(
-        fmt::format("can't be called \"{}\": another body, joint, drive, frame or finger is. Names tell them apart in quantities.", name));
+    place.reject(fmt::format(
+        "can't be called \"{}\": another body, joint, drive, frame or finger is. Names tell them apart in quantities.",
+        name));
   }
   return name;
 }

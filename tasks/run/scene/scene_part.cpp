@@ -15,12 +15,15 @@ constexpr int kMostBits = 2147483647;
 
 std::uint32_t readBits(const JsonValue& json, std::string_view key) {
   const JsonValue* bits = json.find(key);
-  return bits ? static_cast<std::uint32_t>(bits->integer(0, kMostBits, "A sum of powers of two, one for each group: 1, 2, 4, ...")) : 1u;
+  return bits ? static_cast<std::uint32_t>(
+                    bits->integer(0, kMostBits, "A sum of powers of two, one for each group: 1, 2, 4, ..."))
+              : 1u;
 }
 
 Pose readPartPose(const JsonValue& json, const contact::Shape& shape) {
   if (!std::holds_alternative<contact::HalfSpace>(shape))
-    return {quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)), readVector(json, "position", ranges::kCoordinate)};
+    return {quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)),
+            readVector(json, "position", ranges::kCoordinate)};
   for (const std::string_view key : {"position", "rotation"})
     refuse(json, key, "doesn't go with a half-space: its shape has \"point\" and \"normal\".");
   return readHalfSpacePose(json.at("shape"));
@@ -93,7 +96,8 @@ std::vector<engine::ColliderSpec> readParts(const JsonValue& json, const std::st
       parts.push_back(std::move(of_entry[k]));
     }
   }
-  if (parts.size() > kMostParts) json.reject(fmt::format("has {} shapes; a body has at most {}.", parts.size(), kMostParts));
+  if (parts.size() > kMostParts)
+    json.reject(fmt::format("has {} shapes; a body has at most {}.", parts.size(), kMostParts));
   return parts;
 }
 
@@ -108,7 +112,8 @@ engine::GivenInertia readInertia(const JsonValue& json) {
   I(1, 2) = I(2, 1) = products[2];
   const Mat3 R = quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)).toRotationMatrix();
   const Mat3 turned = R * I * R.transpose();
-  return {readVector(json, "center", ranges::kCoordinate), json.find("rotation") ? Mat3(0.5 * (turned + turned.transpose())) : I};
+  return {readVector(json, "center", ranges::kCoordinate),
+          json.find("rotation") ? Mat3(0.5 * (turned + turned.transpose())) : I};
 }
 
 }  // namespace pincer::tasks

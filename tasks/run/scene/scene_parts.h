@@ -22,7 +22,8 @@ void requireName(const std::string& name, const JsonValue& place);
 // Everything that has a name in a scene, while it is read: bodies, joints, tendons, drives, frames and fingers.
 class SceneNames {
  public:
-  // The name under "name", or `otherwise`, now that of the next part. It must be new in the scene, for quantities go by it.
+  // The name under "name", or `otherwise`, now that of the next part. It must be
+  // new in the scene, for quantities go by it.
   std::string readNext(const JsonValue& json, const std::string& otherwise);
   // The index of the body that `json` names; throws with a did-you-mean.
   int bodyNamed(const JsonValue& json, const Scene& scene) const;
@@ -53,7 +54,8 @@ Pose readHalfSpacePose(const JsonValue& shape);
 
 // Sets where the body starts; `start_rotation` is its rotation vector there, if the keyframes say nothing.
 SceneMotion readBodyTrajectory(const JsonValue& json, engine::BodyStart& start, const Vec3& start_rotation);
-// Refuses at `time` a last point that doesn't come later than the one before, or that would be reached faster than `fastest` per second.
+// Refuses at `time` a last point that doesn't come later than the one before, or that would be
+// reached faster than `fastest` per second.
 void requireOnward(const std::vector<TimedPoint>& points, double fastest, const JsonValue& time);
 engine::JointModel readJoint(const JsonValue& json, SceneNames& names, const Scene& scene);
 engine::CouplingModel readCoupling(const JsonValue& json, const Scene& scene);
@@ -63,7 +65,8 @@ struct SceneTendon {
   std::vector<engine::DriveTerm> terms;
 };
 SceneTendon readTendon(const JsonValue& json, SceneNames& names, const Scene& scene);
-SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tendons, SceneNames& names, const Scene& scene);
+SceneDrive readDrive(const JsonValue& json, const std::vector<SceneTendon>& tendons, SceneNames& names,
+                     const Scene& scene);
 // A number: a control that stays; or {"keyframes": ..}.
 void readDriveControl(const JsonValue& json, SceneDrive& drive);
 BodyFrame readFrame(const JsonValue& json, SceneNames& names, const Scene& scene);

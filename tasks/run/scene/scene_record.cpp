@@ -56,7 +56,8 @@ Quantity find(const std::string& text, std::span<const QuantityKind> kinds, std:
 constexpr std::string_view kPressure = "pressure";
 
 // "pressure_2_5": the taxel in row 2, column 5, from 0.
-Quantity findTaxel(const std::string& text, std::string_view word, const SceneFinger& finger, std::size_t index, const Reject& reject) {
+Quantity findTaxel(const std::string& text, std::string_view word, const SceneFinger& finger, std::size_t index,
+                   const Reject& reject) {
   const grasp::PressureGrid& grid = finger.model.taxels;
   int row = -1, column = -1;
   const std::string_view numbers = word.substr(kPressure.size() + 1);
@@ -64,31 +65,38 @@ Quantity findTaxel(const std::string& text, std::string_view word, const SceneFi
   const auto first = std::from_chars(numbers.data(), end, row);
   const bool has_two = first.ec == std::errc() && first.ptr != end && *first.ptr == '_';
   const auto second = has_two ? std::from_chars(first.ptr + 1, end, column) : first;
-  if (!has_two || second.ec != std::errc() || second.ptr != end || row < 0 || row >= grid.rows || column < 0 || column >= grid.columns) {
-    reject(fmt::format("is no taxel of the finger: it has {} rows and {} columns, numbered from 0 (\"pressure_0_0\"; key \"taxels\").",
-                       grid.rows, grid.columns));
+  if (!has_two || second.ec != std::errc() || second.ptr != end || row < 0 || row >= grid.rows || column < 0 ||
+      column >= grid.columns) {
+    reject(fmt::format(
+        "is no taxel of the finger: it has {} rows and {} columns, numbered from 0 (\"pressure_0_0\"; key \"taxels\").",
+        grid.rows, grid.columns));
   }
   return {text, findKind(fingerQuantities(), kPressure), index, row * grid.columns + column};
 }
 
-Quantity findOfFinger(const std::string& text, std::string_view word, const Scene& scene, std::size_t index, const Reject& reject) {
+Quantity findOfFinger(const std::string& text, std::string_view word, const Scene& scene, std::size_t index,
+                      const Reject& reject) {
   const SceneFinger& finger = scene.fingers[index];
-  if (word == kPressure && !finger.model.taxels.isOn()) reject("needs the finger's key \"taxels\": {\"rows\": 8, \"columns\": 6}.");
-  if (word.starts_with(kPressure) && word.size() > kPressure.size()) return findTaxel(text, word, finger, index, reject);
+  if (word == kPressure && !finger.model.taxels.isOn())
+    reject("needs the finger's key \"taxels\": {\"rows\": 8, \"columns\": 6}.");
+  if (word.starts_with(kPressure) && word.size() > kPressure.size())
+    return findTaxel(text, word, finger, index, reject);
   return find(text, fingerQuantities(), word, index, reject);
 }
 
 constexpr char kTouching = '|';
 
 // "cube|left.f_x": of what touches between two bodies, on the first.
-Quantity findOfPair(const std::string& text, std::string_view owner, std::string_view word, const Scene& scene, const Reject& reject) {
+Quantity findOfPair(const std::string& text, std::string_view owner, std::string_view word, const Scene& scene,
+                    const Reject& reject) {
   const std::vector<std::string_view> bodies = familiesOf(scene).front().names;
   const std::size_t bar = owner.find(kTouching);
   std::array<std::size_t, 2> pair{};
   for (std::size_t k = 0; k < 2; ++k) {
     const std::string_view name = k == 0 ? owner.substr(0, bar) : owner.substr(bar + 1);
     const auto it = std::find(bodies.begin(), bodies.end(), name);
-    if (it == bodies.end()) reject(fmt::format("names no body of this scene by \"{}\".{}", name, suggestion(name, bodies)));
+    if (it == bodies.end())
+      reject(fmt::format("names no body of this scene by \"{}\".{}", name, suggestion(name, bodies)));
     pair[k] = static_cast<std::size_t>(it - bodies.begin());
   }
   if (pair[0] == pair[1]) reject("names one body twice: it doesn't touch itself.");
@@ -131,7 +139,8 @@ void readWhen(const JsonValue& json, const Scene& scene, Expectation& expectatio
     constexpr std::array<std::string_view, 2> words = {"always", "end"};
     expectation.tick = time.oneOf(words) == 0 ? Expectation::kAlways : scene.ticks();
   } else {
-    expectation.tick = readTicks(time, scene, {.min = 0, .max = scene.duration, .remedy = "Within the scene's duration."});
+    expectation.tick =
+        readTicks(time, scene, {.min = 0, .max = scene.duration, .remedy = "Within the scene's duration."});
   }
   expectation.time = static_cast<double>(std::max<std::int64_t>(expectation.tick, 0)) * scene.options.h;
 }
@@ -148,7 +157,9 @@ void readTolerance(const JsonValue& json, Expectation& expectation) {
 }  // namespace
 
 Quantity quantityOf(const std::string& name, const Scene& scene) {
-  return findQuantity(name, scene, [&](const std::string& problem) { throw InputError(fmt::format("quantity \"{}\" {}", name, problem)); });
+  return findQuantity(name, scene, [&](const std::string& problem) {
+    throw InputError(fmt::format("quantity \"{}\" {}", name, problem));
+  });
 }
 
 namespace {
@@ -169,12 +180,13 @@ Recording readRecording(const JsonValue& json, const Scene& scene) {
   json.allowOnly(keys::kRecord);
   Recording record;
   if (const JsonValue* interval = json.find("interval")) {
-    record.every = readTicks(*interval, scene, {.min = scene.options.h, .max = scene.duration, .remedy = "At least one tick."});
+    record.every =
+        readTicks(*interval, scene, {.min = scene.options.h, .max = scene.duration, .remedy = "At least one tick."});
   }
   const JsonValue& quantities = json.at("quantities", "What to record: [\"object.p_z\", \"energy\"].");
   if (quantities.array().size() > kMostQuantities)
-    quantities.reject(
-        fmt::format("has {} elements; a scene records at most {}. Leave some out.", quantities.array().size(), kMostQuantities));
+    quantities.reject(fmt::format("has {} elements; a scene records at most {}. Leave some out.",
+                                  quantities.array().size(), kMostQuantities));
   for (const JsonValue& quantity : quantities.array()) {
     addColumns(readQuantity(quantity, scene), scene, record.quantities);
   }
@@ -191,7 +203,8 @@ void readHash(const JsonValue& json, Expectation& expectation) {
   const bool is_hash = hash.size() == 16 && hash.find_first_not_of("0123456789abcdef") == std::string::npos;
   if (!hash.empty() && !is_hash) {
     json.reject(
-        "is no hash: 16 of the digits 0-9 and a-f, as `pincer sim` prints it; or \"\", which `pincer test --update-hashes` fills in.");
+        "is no hash: 16 of the digits 0-9 and a-f, as `pincer sim` prints it; or \"\", which `pincer test "
+        "--update-hashes` fills in.");
   }
   expectation.hash = hash;
   expectation.hash_line = json.line();
@@ -216,7 +229,8 @@ Expectation readExpectation(const JsonValue& json, const Scene& scene) {
   json.allowOnly(keys::kExpectation);
   Expectation expectation;
   expectation.quantity = readQuantity(json.at("quantity", "What is measured: \"object.p_z\"."), scene);
-  if (const JsonValue* relation = json.find("relation")) expectation.relation = static_cast<Relation>(relation->oneOf(kRelationNames));
+  if (const JsonValue* relation = json.find("relation"))
+    expectation.relation = static_cast<Relation>(relation->oneOf(kRelationNames));
   readWhen(json, scene, expectation);
   expectation.value = json.at("value", "What it is compared with, in the quantity's unit.").number(ranges::kExpected);
   readTolerance(json, expectation);

@@ -34,7 +34,8 @@ RobotJson readRobot(const JsonValue& json, Scene& scene) {
   }
   if (const JsonValue* v = json.find("keyframe")) options.keyframe = v->text();
   if (const JsonValue* v = json.find("start")) {
-    for (const std::string& joint : v->keys()) options.start.emplace_back(joint, v->at(joint).number(ranges::kJointPosition));
+    for (const std::string& joint : v->keys())
+      options.start.emplace_back(joint, v->at(joint).number(ranges::kJointPosition));
   }
   options.X_WR = {quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)),
                   readVector(json, "position", ranges::kCoordinate)};

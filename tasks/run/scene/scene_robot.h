@@ -10,7 +10,8 @@ namespace pincer::tasks {
 // True for the files that robots come in: .xml.
 bool isRobotFile(const std::string& path);
 
-// A robot's file as the text of a scene; what of it has no effect is appended to `remarks`, as lines for people. Throws InputError.
+// A robot's file as the text of a scene; what of it has no effect is appended to
+// `remarks`, as lines for people. Throws InputError.
 std::string robotSceneText(const std::string& path, std::string& remarks);
 
 // A file's text, parsed, and what it is called in messages.
@@ -19,7 +20,8 @@ struct NamedJson {
   JsonValue json;
 };
 
-// One of a scene's "robots": its parts as a scene, and what their names begin with. Its remarks are appended to the scene's. Throws InputError.
+// One of a scene's "robots": its parts as a scene, and what their names begin with. Its remarks are
+// appended to the scene's. Throws InputError.
 struct RobotJson {
   std::string prefix;
   JsonValue json;

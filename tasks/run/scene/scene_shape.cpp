@@ -15,7 +15,9 @@
 namespace pincer::tasks {
 namespace {
 
-double length(const JsonValue& json, std::string_view key) { return json.at(key, "In metres.").number(ranges::kLength); }
+double length(const JsonValue& json, std::string_view key) {
+  return json.at(key, "In metres.").number(ranges::kLength);
+}
 
 contact::Shape readCapsule(const JsonValue& json) {
   return contact::Capsule{length(json, "radius"), json.at("length", "In metres.").number(ranges::kStraightLength) / 2};
@@ -26,7 +28,8 @@ contact::Shape readCylinderWithFlat(const JsonValue& json) {
   const JsonValue& flat = json.at("flat_distance", "From the axis to the flat, in metres.");
   const double distance = flat.number(ranges::kLength);
   if (distance >= radius)
-    flat.reject(fmt::format("isn't smaller than the radius {}: nothing would be cut off. Use the type \"cylinder\".", radius));
+    flat.reject(
+        fmt::format("isn't smaller than the radius {}: nothing would be cut off. Use the type \"cylinder\".", radius));
   return contact::CylinderWithFlat{radius, length(json, "length") / 2, distance};
 }
 
@@ -39,15 +42,18 @@ void requireSize(const std::vector<Vec3>& points, const JsonValue& json) {
   if (!isWithin(size, ranges::kLength))
     json.reject(fmt::format("has a shape of {:g} m, which {} Are the units right?", size, outOfRange(ranges::kLength)));
   if (!isWithin(farthest, ranges::kCoordinate))
-    json.reject(
-        fmt::format("has a point {:g} m from the origin, which {} Are the units right?", farthest, outOfRange(ranges::kCoordinate)));
+    json.reject(fmt::format("has a point {:g} m from the origin, which {} Are the units right?", farthest,
+                            outOfRange(ranges::kCoordinate)));
 }
 
 contact::TriangleMesh readTriangles(const JsonValue& json, const std::string& scene_file) {
-  const std::string& units = json.at("units", "The unit of the file's coordinates: \"m\", \"cm\", \"mm\" or \"in\".").text();
-  const std::string path = besideScene(scene_file, json.at("file", "An OBJ, STL, PLY or OFF file, relative to the scene's folder.").text());
+  const std::string& units =
+      json.at("units", "The unit of the file's coordinates: \"m\", \"cm\", \"mm\" or \"in\".").text();
+  const std::string path =
+      besideScene(scene_file, json.at("file", "An OBJ, STL, PLY or OFF file, relative to the scene's folder.").text());
   const JsonValue* scale = json.find("scale");
-  return contact::readMesh(path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(ranges::kScale) : 1)});
+  return contact::readMesh(
+      path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(ranges::kScale) : 1)});
 }
 
 Vec2 readProfilePoint(const JsonValue& json) {
@@ -65,7 +71,8 @@ contact::TriangleMesh readLathe(const JsonValue& json, const JsonValue& profile)
     profile.reject(fmt::format("has {} points; a profile has at most {}.", profile.array().size(), kMostProfilePoints));
   for (const JsonValue& point : profile.array()) points.push_back(readProfilePoint(point));
   const JsonValue* segments = json.find("segments");
-  return contact::lathe(points, segments ? segments->integer(3, 1000, "Facets around the axis; 48 is the default.") : 48);
+  return contact::lathe(points,
+                        segments ? segments->integer(3, 1000, "Facets around the axis; 48 is the default.") : 48);
 }
 
 // From a file, or turned.
@@ -125,8 +132,9 @@ std::vector<Vec3> readAnyPoints(const JsonValue& json, const std::string& scene_
 std::vector<Vec3> readPoints(const JsonValue& json, const std::string& scene_file) {
   std::vector<Vec3> points = readAnyPoints(json, scene_file);
   if (points.size() > kMostHullPoints)
-    json.reject(fmt::format("has {} points; a hull is made of at most {}. Leave out those inside, or simplify the mesh.", points.size(),
-                            kMostHullPoints));
+    json.reject(
+        fmt::format("has {} points; a hull is made of at most {}. Leave out those inside, or simplify the mesh.",
+                    points.size(), kMostHullPoints));
   requireSize(points, json);
   return points;
 }
@@ -155,7 +163,8 @@ contact::Shape readShape(const JsonValue& json, const std::string& file) {
   json.allowOnly(keysOf(type));
   const std::string_view name = keys::kShapeTypes[type];
   if (name == "sphere") return contact::Sphere{length(json, "radius")};
-  if (name == "box") return contact::Box{json.at("size", "Edge lengths [x, y, z] in metres.").vector(ranges::kLength) / 2};
+  if (name == "box")
+    return contact::Box{json.at("size", "Edge lengths [x, y, z] in metres.").vector(ranges::kLength) / 2};
   if (name == "capsule") return readCapsule(json);
   if (name == "cylinder") return contact::Cylinder{length(json, "radius"), length(json, "length") / 2};
   if (name == "cylinder_with_flat") return readCylinderWithFlat(json);

@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of a folder's files those that expect something; others may be studies, or what scenes are made of. One that can't be read is a test: it fails.
+// Of a folder's files those that expect something; others may be studies, or what scenes are made of.
+// One that can't be read is a test: it fails.
 bool expectsSomething(const std::string& path) {
   try {
     const JsonValue json = readJson(path, kSceneFile);
@@ -31,8 +32,10 @@ bool expectsSomething(const std::string& path) {
 std::vector<std::string> scenesBelow(const std::string& folder) {
   std::vector<std::string> found;
   std::error_code ignored;  // a folder that may not be looked into has nothing to offer
-  for (const auto& entry : fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ignored)) {
-    if (entry.path().extension() == ".json" && entry.is_regular_file(ignored) && expectsSomething(entry.path().string()))
+  for (const auto& entry :
+       fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, ignored)) {
+    if (entry.path().extension() == ".json" && entry.is_regular_file(ignored) &&
+        expectsSomething(entry.path().string()))
       found.push_back(entry.path().string());
   }
   std::sort(found.begin(), found.end());
@@ -45,7 +48,8 @@ std::string replacedInLine(std::string text, int line, const std::string& from, 
   for (int l = 1; l < line; ++l) begin = text.find('\n', begin) + 1;
   const std::size_t key = text.find("\"hash\"", begin);
   const std::size_t at = text.find('"' + from + '"', key == std::string::npos ? begin : key + 6);
-  if (at == std::string::npos) throw InputError(fmt::format("line {}: the hash isn't written plainly; put it in by hand: {}", line, to));
+  if (at == std::string::npos)
+    throw InputError(fmt::format("line {}: the hash isn't written plainly; put it in by hand: {}", line, to));
   return text.replace(at + 1, from.size(), to);
 }
 
@@ -69,7 +73,8 @@ std::vector<std::string> failuresOf(const SimResult& result, bool hashes_are_ren
     const Expectation& expected = result.log.expectations()[i];
     const Outcome& outcome = result.log.outcomes()[i];
     if (outcome.holds() || (expected.hash && hashes_are_renewed && outcome.reached)) continue;
-    failures.push_back(outcomeText(expected, outcome) + (expected.because.empty() ? "" : ", because " + expected.because));
+    failures.push_back(outcomeText(expected, outcome) +
+                       (expected.because.empty() ? "" : ", because " + expected.because));
   }
   if (result.broke) failures.push_back("the state isn't finite any more");
   return failures;
@@ -77,7 +82,8 @@ std::vector<std::string> failuresOf(const SimResult& result, bool hashes_are_ren
 
 class SceneTests {
  public:
-  SceneTests(const std::vector<std::string>& files, const SceneTestOptions& options, const std::atomic<bool>& interrupted)
+  SceneTests(const std::vector<std::string>& files, const SceneTestOptions& options,
+             const std::atomic<bool>& interrupted)
       : files_(files), options_(options), interrupted_(interrupted), verdicts_(files.size()) {}
 
   std::vector<SceneVerdict> run() {
@@ -107,7 +113,8 @@ class SceneTests {
     Simulation simulation(readSceneOrBuiltin(verdict.file));
     verdict.expectations = simulation.scene().expectations.size();
     if (verdict.expectations == 0)
-      throw InputError(fmt::format("{}: expects nothing, so it tests nothing. Add \"expect\" (docs/scenes.md).", verdict.file));
+      throw InputError(
+          fmt::format("{}: expects nothing, so it tests nothing. Add \"expect\" (docs/scenes.md).", verdict.file));
     const SimResult result = runScene(simulation, {}, interrupted_, [](std::int64_t) {});
     if (result.interrupted) return;
     verdict.run = true;
@@ -138,7 +145,8 @@ std::vector<std::string> findSceneTests(const std::vector<std::string>& paths) {
       continue;
     }
     const std::vector<std::string> found = scenesBelow(path);
-    if (found.empty()) throw InputError(fmt::format("{}: no scene in this folder expects anything, so there is nothing to test.", path));
+    if (found.empty())
+      throw InputError(fmt::format("{}: no scene in this folder expects anything, so there is nothing to test.", path));
     files.insert(files.end(), found.begin(), found.end());
   }
   return files;

@@ -46,8 +46,9 @@ std::string joined(const std::vector<std::string>& lines) {
 std::string testCase(const SceneVerdict& verdict) {
   const std::filesystem::path path(verdict.file);
   const std::string folder = path.parent_path().string();
-  std::string text = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", xmlText(folder.empty() ? "pincer" : folder),
-                                 xmlText(path.stem().string()), verdict.seconds);
+  std::string text =
+      fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"",
+                  xmlText(folder.empty() ? "pincer" : folder), xmlText(path.stem().string()), verdict.seconds);
   if (verdict.isGood()) return text + "/>\n";
   text += ">\n";
   if (!verdict.error.empty()) {
@@ -55,7 +56,8 @@ std::string testCase(const SceneVerdict& verdict) {
   } else if (!verdict.run) {
     text += "      <skipped message=\"interrupted\"/>\n";
   } else {
-    text += fmt::format("      <failure message=\"{}\">{}</failure>\n", xmlText(verdict.failures.front()), joined(verdict.failures));
+    text += fmt::format("      <failure message=\"{}\">{}</failure>\n", xmlText(verdict.failures.front()),
+                        joined(verdict.failures));
   }
   return text + "    </testcase>\n";
 }
@@ -73,8 +75,8 @@ std::vector<std::string> hashesOf(Scene scene, std::int64_t every, const std::at
   return hashes;
 }
 
-constexpr InputKind kSceneLog = {"a log of a failed scene (a JSON file that `pincer test --out` wrote)", 64 * kMegabyte, true,
-                                 "A log has 20 bytes per tick."};
+constexpr InputKind kSceneLog = {"a log of a failed scene (a JSON file that `pincer test --out` wrote)", 64 * kMegabyte,
+                                 true, "A log has 20 bytes per tick."};
 
 }  // namespace
 
@@ -82,12 +84,14 @@ std::string junitText(const std::vector<SceneVerdict>& verdicts) {
   const auto count = [&](auto is) { return std::count_if(verdicts.begin(), verdicts.end(), is); };
   double seconds = 0;
   for (const SceneVerdict& verdict : verdicts) seconds += verdict.seconds;
-  const std::string totals = fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"", verdicts.size(),
-                                         count([](const SceneVerdict& v) { return !v.failures.empty(); }),
-                                         count([](const SceneVerdict& v) { return !v.error.empty(); }),
-                                         count([](const SceneVerdict& v) { return !v.run && v.error.empty(); }), seconds);
+  const std::string totals =
+      fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"", verdicts.size(),
+                  count([](const SceneVerdict& v) { return !v.failures.empty(); }),
+                  count([](const SceneVerdict& v) { return !v.error.empty(); }),
+                  count([](const SceneVerdict& v) { return !v.run && v.error.empty(); }), seconds);
   std::string text =
-      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite name=\"pincer\" {}>\n", totals, totals);
+      fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n  <testsuite name=\"pincer\" {}>\n",
+                  totals, totals);
   for (const SceneVerdict& verdict : verdicts) text += testCase(verdict);
   return text + "  </testsuite>\n</testsuites>\n";
 }
@@ -97,7 +101,13 @@ std::string sceneLog(const std::string& file) {
   Scene scene = readSceneOrBuiltin(file);
   const std::int64_t every = scene.ticks() / kMostHashes + 1;
   JsonWriter json;
-  json.beginObject().key("scene").value(file).key("build").value(versionText()).key("sources").value(kBuildInfo.sources);
+  json.beginObject()
+      .key("scene")
+      .value(file)
+      .key("build")
+      .value(versionText())
+      .key("sources")
+      .value(kBuildInfo.sources);
   json.key("every").value(every).key("hashes").beginArray();
   for (const std::string& hash : hashesOf(std::move(scene), every, never)) json.value(hash);
   return json.endArray().endObject().text() + "\n";

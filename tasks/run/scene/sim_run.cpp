@@ -18,7 +18,8 @@ class CsvRecorder {
     if (path.empty()) return;
     file_ = std::make_unique<AtomicFile>(path);
     table_.add("time [s]");
-    for (const Quantity& quantity : record.quantities) table_.add(fmt::format("{} [{}]", quantity.name, quantity.kind->unit));
+    for (const Quantity& quantity : record.quantities)
+      table_.add(fmt::format("{} [{}]", quantity.name, quantity.kind->unit));
     table_.endRow();
   }
 
@@ -48,7 +49,8 @@ class CsvRecorder {
 std::int64_t ticksOf(const char* option, double seconds, double tick) {
   const std::int64_t ticks = wholeTicks(seconds, tick);
   if (ticks >= 1) return ticks;
-  throw InputError(fmt::format("{} = {} isn't a positive whole number of ticks of {} s, which this scene has.", option, seconds, tick));
+  throw InputError(fmt::format("{} = {} isn't a positive whole number of ticks of {} s, which this scene has.", option,
+                               seconds, tick));
 }
 
 }  // namespace
@@ -61,8 +63,9 @@ void applyOptions(const SimOptions& options, Scene& scene) {
     scene.duration = *options.duration;
   }
   if (!options.csv.empty() && scene.record.quantities.empty()) {
-    throw InputError(
-        fmt::format("{}: there is nothing to write to --out: the scene has no \"record\" with quantities (docs/scenes.md).", scene.file));
+    throw InputError(fmt::format(
+        "{}: there is nothing to write to --out: the scene has no \"record\" with quantities (docs/scenes.md).",
+        scene.file));
   }
 }
 

@@ -32,7 +32,8 @@ struct SimResult {
 // Changes `scene` as the options say. Throws InputError when they don't fit it.
 void applyOptions(const SimOptions& options, Scene& scene);
 
-// `progress` is called after every tick with the ticks done. Throws InputError when the CSV can't be written (then none is left).
+// `progress` is called after every tick with the ticks done. Throws InputError when the
+// CSV can't be written (then none is left).
 SimResult runScene(Simulation& simulation, const SimOptions& options, const std::atomic<bool>& interrupted,
                    const std::function<void(std::int64_t)>& progress);
 

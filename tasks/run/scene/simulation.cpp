@@ -8,7 +8,8 @@ namespace {
 
 std::optional<grasp::BaselineFingers> baselinesOf(const Scene& scene) {
   const std::vector<grasp::FingerMethod> methods = methodsOf(scene);
-  const bool are_ours = std::all_of(methods.begin(), methods.end(), [](grasp::FingerMethod m) { return m == grasp::FingerMethod::kProxy; });
+  const bool are_ours = std::all_of(methods.begin(), methods.end(),
+                                    [](grasp::FingerMethod m) { return m == grasp::FingerMethod::kProxy; });
   return are_ours ? std::nullopt : std::optional(grasp::BaselineFingers(methods));
 }
 

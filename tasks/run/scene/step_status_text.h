@@ -17,21 +17,25 @@ struct StatusKind {
 
 constexpr std::array<StatusKind, 8> kStatusKinds = {{
     {engine::kSolverNotConverged, "solver_not_converged",
-     "the contact solver stopped before its tolerance; its impulses are safe, but not exact. Loosen solver.tolerance, or look for contacts "
+     "the contact solver stopped before its tolerance; its impulses are safe, but not exact. Loosen solver.tolerance, "
+     "or look for contacts "
      "that "
      "contradict each other."},
     {engine::kContactsDropped, "contacts_dropped",
      "there were more contacts than solver.max_contacts: the shallowest were left out. Raise it."},
     {engine::kStateNotFinite, "state_not_finite",
      "a number overflowed; the run was ended. Look for extreme masses, velocities or stiffnesses."},
-    {engine::kInputNotFinite, "input_not_finite", "a finger's target wasn't a number; the finger stayed at its last one."},
-    {engine::kImpactsCut, "impacts_cut", "bodies hit each other more often than a tick can be cut; some hits landed. Shorten the tick."},
+    {engine::kInputNotFinite, "input_not_finite",
+     "a finger's target wasn't a number; the finger stayed at its last one."},
+    {engine::kImpactsCut, "impacts_cut",
+     "bodies hit each other more often than a tick can be cut; some hits landed. Shorten the tick."},
     {engine::kBudgetSpent, "budget_spent",
      "the solver's budget ran out: the best iterate counts. Raise solver.budget, or simplify the scene."},
     {engine::kToleranceNotMet, "tolerance_not_met",
      "solver.max_parts were too few for solver.position_tolerance. Raise max_parts, or the tolerance."},
     {engine::kTurnsTooFar, "turns_too_far",
-     "a joint turned by more than half a radian in a 64th of a tick; its course isn't exact. Shorten the tick, or damp the joint."},
+     "a joint turned by more than half a radian in a 64th of a tick; its course isn't exact. Shorten the tick, or damp "
+     "the joint."},
 }};
 
 class StatusCounts {

@@ -11,7 +11,8 @@ constexpr std::int64_t kMostKept = 1'000'000;
 
 }  // namespace
 
-TickTimes::TickTimes(std::int64_t expected_ticks) : stride_(std::max<std::int64_t>(1, (expected_ticks + kMostKept - 1) / kMostKept)) {
+TickTimes::TickTimes(std::int64_t expected_ticks)
+    : stride_(std::max<std::int64_t>(1, (expected_ticks + kMostKept - 1) / kMostKept)) {
   seconds_.reserve(static_cast<std::size_t>(std::clamp<std::int64_t>(expected_ticks, 0, kMostKept)));
 }
 

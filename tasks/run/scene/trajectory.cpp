@@ -53,20 +53,24 @@ void setVelocities(std::vector<TimedPoint>& points) {
 }
 
 // A recorded motion may have begun before the scene.
-constexpr NumberRule kSampleTime = {.min = -ranges::kLongestDuration, .max = ranges::kLongestDuration, .remedy = "Times are in seconds."};
+constexpr NumberRule kSampleTime = {
+    .min = -ranges::kLongestDuration, .max = ranges::kLongestDuration, .remedy = "Times are in seconds."};
 
 struct CsvPlace {
   const std::string& path;
   int line;
 
-  [[noreturn]] void reject(const std::string& problem) const { throw InputError(fmt::format("{}:{}: {}", path, line, problem)); }
+  [[noreturn]] void reject(const std::string& problem) const {
+    throw InputError(fmt::format("{}:{}: {}", path, line, problem));
+  }
 };
 
 double parseField(std::string_view field, const CsvPlace& place, const NumberRule& rule) {
   double value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
-    place.reject(fmt::format("\"{}\" isn't a finite number. Each row is time,x,y,z in seconds and metres.", printable(field)));
+    place.reject(
+        fmt::format("\"{}\" isn't a finite number. Each row is time,x,y,z in seconds and metres.", printable(field)));
   }
   if (!isWithin(value, rule)) place.reject(fmt::format("{} {}", printable(field), outOfRange(rule)));
   return value;
@@ -106,7 +110,8 @@ Trajectory Trajectory::throughSamples(std::vector<TimedPoint> samples) {
 }
 
 TimedPoint Trajectory::at(double time) const {
-  const auto after = std::upper_bound(points_.begin(), points_.end(), time, [](double t, const TimedPoint& p) { return t < p.time; });
+  const auto after =
+      std::upper_bound(points_.begin(), points_.end(), time, [](double t, const TimedPoint& p) { return t < p.time; });
   if (after == points_.begin()) return {time, points_.front().p_W, Vec3::Zero()};
   if (after == points_.end()) return {time, points_.back().p_W, Vec3::Zero()};
   return minimum_jerk_ ? minimumJerk(*(after - 1), *after, time) : cubic(*(after - 1), *after, time);
@@ -115,12 +120,16 @@ TimedPoint Trajectory::at(double time) const {
 std::string problemBetween(const TimedPoint& from, const TimedPoint& to, double fastest) {
   const double span = to.time - from.time, way = (to.p_W - from.p_W).norm();
   constexpr double kShortestSpan = 1e-6;  // [s]: a tenth of the shortest tick
-  if (!(span > 0)) return fmt::format("time {} doesn't follow {}. Times must increase from one point to the next.", to.time, from.time);
+  if (!(span > 0))
+    return fmt::format("time {} doesn't follow {}. Times must increase from one point to the next.", to.time,
+                       from.time);
   if (span < kShortestSpan)
-    return fmt::format("time {} follows {} by {:g} s; at least {:g} s are needed.", to.time, from.time, span, kShortestSpan);
+    return fmt::format("time {} follows {} by {:g} s; at least {:g} s are needed.", to.time, from.time, span,
+                       kShortestSpan);
   if (way <= fastest * span) return "";
   return fmt::format(
-      "from time {} to {} it would go {:g} in {:g} s, faster than {:g} per second. Are time and place in seconds, metres and radians?",
+      "from time {} to {} it would go {:g} in {:g} s, faster than {:g} per second. Are time and place in seconds, "
+      "metres and radians?",
       from.time, to.time, way, span, fastest);
 }
 

@@ -21,7 +21,11 @@ constexpr std::size_t kWindow = 10;  // ticks of a difference of places
 }  // namespace
 
 ArmCheck::ArmCheck(HandDevices& devices, int arms, const ArmCheckOptions& options)
-    : devices_(devices), options_(options), gates_(static_cast<std::size_t>(arms)), findings_(gates_.size()), past_(gates_.size()) {
+    : devices_(devices),
+      options_(options),
+      gates_(static_cast<std::size_t>(arms)),
+      findings_(gates_.size()),
+      past_(gates_.size()) {
   for (int i = 0; i < arms; ++i) {
     devices::GateLimits limits;
     limits.watchdog_time = kOldestSample * options.watchdog;
@@ -63,7 +67,8 @@ void ArmCheck::drive(std::size_t i, double now) {
   const Vec3 f_D = devices::gateForce(limits_[i], in, gates_[i]);
   arm.commandForce(f_D);
   findings_[i].strongest = std::max(findings_[i].strongest, f_D.norm());
-  if (gates_[i].trip != devices::Trip::kNone && findings_[i].trip.empty()) findings_[i].trip = devices::describe(limits_[i], gates_[i]);
+  if (gates_[i].trip != devices::Trip::kNone && findings_[i].trip.empty())
+    findings_[i].trip = devices::describe(limits_[i], gates_[i]);
 }
 
 // Out and back, with neither jerk nor end.
@@ -107,11 +112,15 @@ void ArmCheck::learnSpeed(std::size_t i, const devices::ArmSample& sample) {
 
 std::string armCheckText(const ArmFindings& f) {
   const auto ms = [](double s) { return 1e3 * s; };
-  std::string text = fmt::format("{}: {} of {} ticks with a sample, {} of them new\n", f.arm, f.valid, f.ticks, f.fresh);
-  text += fmt::format("  age of a sample   median {:.2f}, 99.9 % <= {:.2f}, largest {:.2f} ms\n", ms(f.ages.quantile(0.5)),
-                      ms(f.ages.quantile(0.999)), ms(f.ages.largest()));
-  text += fmt::format("  place             at rest within {:.3g} um, smallest step {:.3g} um\n", 1e6 * f.noise, 1e6 * f.smallest_step);
-  if (f.tells_speed) text += fmt::format("  velocity          {:.2g} mm/s (rms) off the differences of its places\n", 1e3 * f.speed_error);
+  std::string text =
+      fmt::format("{}: {} of {} ticks with a sample, {} of them new\n", f.arm, f.valid, f.ticks, f.fresh);
+  text += fmt::format("  age of a sample   median {:.2f}, 99.9 % <= {:.2f}, largest {:.2f} ms\n",
+                      ms(f.ages.quantile(0.5)), ms(f.ages.quantile(0.999)), ms(f.ages.largest()));
+  text += fmt::format("  place             at rest within {:.3g} um, smallest step {:.3g} um\n", 1e6 * f.noise,
+                      1e6 * f.smallest_step);
+  if (f.tells_speed)
+    text +=
+        fmt::format("  velocity          {:.2g} mm/s (rms) off the differences of its places\n", 1e3 * f.speed_error);
   text += fmt::format("  push              {:.2f} N at most; it moved {:.1f} mm", f.strongest, 1e3 * f.moved);
   return text;
 }
@@ -121,16 +130,19 @@ std::vector<std::string> oddities(const ArmFindings& f, const ArmCheckOptions& o
   constexpr double kMostInvalid = 0.01;
   if (!f.trip.empty()) odd.push_back(f.trip);
   if (static_cast<double>(f.valid) < (1 - kMostInvalid) * static_cast<double>(f.ticks))
-    odd.push_back(fmt::format("Only {} of {} ticks had a sample. Check cable, power and calibration.", f.valid, f.ticks));
+    odd.push_back(
+        fmt::format("Only {} of {} ticks had a sample. Check cable, power and calibration.", f.valid, f.ticks));
   const double old = f.ages.quantile(0.999), wanted = kOldestSample * options.watchdog;
   if (old > wanted)
-    odd.push_back(fmt::format(
-        "A sample in a thousand is older than {:.1f} ms, and a session trusts {:.1f} ms. Close other programs, permit real-time "
-        "priority (docs/devices/setup.md), or run sessions with --watchdog {:.0f}.",
-        1e3 * old, 1e3 * wanted, std::ceil(1e3 * old / kOldestSample)));
+    odd.push_back(
+        fmt::format("A sample in a thousand is older than {:.1f} ms, and a session trusts {:.1f} ms. Close other "
+                    "programs, permit real-time "
+                    "priority (docs/devices/setup.md), or run sessions with --watchdog {:.0f}.",
+                    1e3 * old, 1e3 * wanted, std::ceil(1e3 * old / kOldestSample)));
   if (options.force > 0 && f.trip.empty() && f.moved < 1e-3)
-    odd.push_back(fmt::format("{:.2f} N moved it by {:.1f} mm only. Is something in its way, or are its motors without power?", f.strongest,
-                              1e3 * f.moved));
+    odd.push_back(
+        fmt::format("{:.2f} N moved it by {:.1f} mm only. Is something in its way, or are its motors without power?",
+                    f.strongest, 1e3 * f.moved));
   return odd;
 }
 

@@ -1,10 +1,11 @@
 // arm_check: does an arm of any kind do what a session needs? A few seconds, which nobody wears:
 //
 //   rest    [0, kRest)      forces off: samples, their ages, the device's rate, noise
-//   push    [kRest, end)    armed: a weak spring pulls the tip 15 mm along D's z and back; f = k (p_target - p) - b v, |f| <= force
+//   push    [kRest, end)    armed: a weak spring pulls the tip 15 mm along D's z and back;
+//                           f = k (p_target - p) - b v, |f| <= force
 //
-// The spring ends by itself what a constant force on a free arm wouldn't: it never runs into a stop. All of it goes through the gate, with
-// limits narrower than a session's: half a newton, half a metre per second.
+// The spring ends by itself what a constant force on a free arm wouldn't: it never runs into a stop. All of it goes
+// through the gate, with limits narrower than a session's: half a newton, half a metre per second.
 #pragma once
 #include <string>
 #include <vector>
@@ -28,7 +29,7 @@ struct ArmFindings {
   double noise = 0;                              // farthest from the first place while at rest [m]
   double smallest_step = 0;                      // between two places; 0: it never moved [m]
   double moved = 0;                              // along z while pushed [m]
-  double speed_error = 0;                        // rms of the told velocity against differences over 10 ms; of arms that tell [m/s]
+  double speed_error = 0;  // rms of the told velocity against differences over 10 ms; of arms that tell [m/s]
   bool tells_speed = false;
   double strongest = 0;  // force let through [N]
   std::string trip;      // what the gate said, empty: nothing

@@ -55,7 +55,8 @@ bool calibrationIsSound(double value) { return std::abs(value) <= 10; }  // fals
 
 void checkCalibrationValue(const std::string& name, double value) {
   if (calibrationIsSound(value)) return;
-  throw InputError(fmt::format("calibration: {} = {} is out of range [-10, 10]. Lengths are in metres, angles in radians.", name, value));
+  throw InputError(fmt::format(
+      "calibration: {} = {} is out of range [-10, 10]. Lengths are in metres, angles in radians.", name, value));
 }
 
 }  // namespace pincer::tasks

@@ -35,23 +35,25 @@ std::vector<FalconPlace> chosenFalcons(const DeviceOptions& options) {
   const std::vector<FalconPlace> places = devices::falcon::listFalcons();
   const auto fingers = static_cast<std::size_t>(options.fingers);
   if (places.size() < fingers) {
-    throw DeviceError(
-        fmt::format("A session with {} fingers needs {} Novint Falcons; found: {}. Plug them in, and check their power supplies.", fingers,
-                    fingers, listOf(places)));
+    throw DeviceError(fmt::format(
+        "A session with {} fingers needs {} Novint Falcons; found: {}. Plug them in, and check their power supplies.",
+        fingers, fingers, listOf(places)));
   }
   std::vector<FalconPlace> chosen;
   for (std::size_t i = 0; i < fingers; ++i) {
     const auto found = std::find_if(places.begin(), places.end(), [&](const FalconPlace& place) {
-      if (i < options.arms.size()) return place.port == options.arms[i] || (!place.serial.empty() && place.serial == options.arms[i]);
+      if (i < options.arms.size())
+        return place.port == options.arms[i] || (!place.serial.empty() && place.serial == options.arms[i]);
       return std::none_of(chosen.begin(), chosen.end(), [&](const FalconPlace& c) { return c.port == place.port; });
     });
     if (found == places.end()) {
-      throw DeviceError(
-          fmt::format("No Falcon is at the port, or has the serial number, \"{}\"; found: {}.", options.arms[i], listOf(places)));
+      throw DeviceError(fmt::format("No Falcon is at the port, or has the serial number, \"{}\"; found: {}.",
+                                    options.arms[i], listOf(places)));
     }
     chosen.push_back(*found);
     if (std::count_if(chosen.begin(), chosen.end(), [&](const FalconPlace& c) { return c.port == found->port; }) > 1)
-      throw DeviceError(fmt::format("--arms: two fingers can't wear the same Falcon, {}. Found: {}.", nameOf(*found), listOf(places)));
+      throw DeviceError(fmt::format("--arms: two fingers can't wear the same Falcon, {}. Found: {}.", nameOf(*found),
+                                    listOf(places)));
   }
   return chosen;
 }
@@ -72,7 +74,8 @@ class FalconHand final : public HandDevices {
   }
   std::vector<std::string> describe() override {
     std::vector<std::string> lines;
-    for (std::size_t i = 0; i < arms_.size(); ++i) lines.push_back(fmt::format("finger {}: Novint Falcon at {}", i, nameOf(places_[i])));
+    for (std::size_t i = 0; i < arms_.size(); ++i)
+      lines.push_back(fmt::format("finger {}: Novint Falcon at {}", i, nameOf(places_[i])));
     lines.push_back("Push each grip all the way in and out once, so that its encoders find their zero.");
     return lines;
   }
@@ -84,8 +87,9 @@ class FalconHand final : public HandDevices {
       return place.port == calibration.serial || place.serial == calibration.serial;
     });
     if (found == places_.end()) {
-      throw InputError(fmt::format("{}: it is of device {}, and no finger wears that Falcon. Give the files of the session's (worn: {}).",
-                                   path, calibration.serial, listOf(places_)));
+      throw InputError(fmt::format(
+          "{}: it is of device {}, and no finger wears that Falcon. Give the files of the session's (worn: {}).", path,
+          calibration.serial, listOf(places_)));
     }
     bases_[static_cast<std::size_t>(found - places_.begin())] = armBaseIn(calibration);
   }

@@ -15,7 +15,8 @@ DeviceChoice deviceChoiceOf(const std::string& name) {
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (name == kNames[i]) return static_cast<DeviceChoice>(i);
   }
-  throw InputError(fmt::format("devices \"{}\" are unknown. They are one of sim, usb, falcon, haply, mouse, replay.", name));
+  throw InputError(
+      fmt::format("devices \"{}\" are unknown. They are one of sim, usb, falcon, haply, mouse, replay.", name));
 }
 
 bool hasMotors(DeviceChoice choice) {
@@ -29,7 +30,9 @@ std::unique_ptr<HandDevices> openArms(const DeviceOptions& options) {
     case DeviceChoice::kUsb:
       return openUsbHand(options);
     case DeviceChoice::kSim:
-      throw DeviceError("Simulated devices are worn by a simulated participant; a session opens them by itself. Leave out --devices.");
+      throw DeviceError(
+          "Simulated devices are worn by a simulated participant; a session opens them by itself. Leave out "
+          "--devices.");
     case DeviceChoice::kMouse:
       throw DeviceError("The mouse moves fingers in the viewer only: add --view.");
     case DeviceChoice::kFalcon:

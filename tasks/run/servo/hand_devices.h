@@ -1,4 +1,5 @@
-// hand_devices: the arms and displays that a person's fingers wear in a session, whatever drives them: an explicit factory.
+// hand_devices: the arms and displays that a person's fingers wear in a session,
+// whatever drives them: an explicit factory.
 //
 // All clocks are made the servo's: samples carry times in seconds since begin().
 #pragma once
@@ -24,7 +25,8 @@ class DeviceError : public std::runtime_error {
 // Tones for a person, on devices that have a buzzer or a lamp.
 enum class DeviceTone { kStart, kSuccess, kEnd };
 
-// Of the time that the loop may stall (--watchdog): so old may a sample be, and after so long does a USB arm go limp by itself.
+// Of the time that the loop may stall (--watchdog): so old may a sample be, and after
+// so long does a USB arm go limp by itself.
 inline constexpr double kOldestSample = 0.6, kArmDeadline = 0.8;
 
 class HandDevices {
@@ -52,7 +54,8 @@ class HandDevices {
 
 enum class DeviceChoice { kSim, kUsb, kFalcon, kHaply, kMouse, kReplay };
 DeviceChoice deviceChoiceOf(const std::string& name);  // throws InputError for any other name
-// True if somebody may feel forces of these devices: then the session's time is the wall clock's, and a watchdog guards the motors.
+// True if somebody may feel forces of these devices: then the session's time is the wall
+// clock's, and a watchdog guards the motors.
 bool hasMotors(DeviceChoice choice);
 
 struct DeviceOptions {
@@ -65,15 +68,16 @@ struct DeviceOptions {
   std::vector<std::string> calibrations;    // files of arms (device_calibration.h)
   std::string recording;                    // replay: a session's store, or a CSV file of samples (pincer export)
   std::string firmware;                     // falcon: the maker's image
-  std::vector<std::string> grips;           // haply: ids of VerseGrips, per finger; empty: the finger's turn isn't measured
+  std::vector<std::string> grips;  // haply: ids of VerseGrips, per finger; empty: the finger's turn isn't measured
   std::string service = "127.0.0.1:10001";  // haply: where its service is, HOST:PORT or HOST:PORT:EVENTS
   std::optional<double> force_gate;         // haply: gain of its force gate; absent: left as it is
-  std::string pressure;                     // HOST:PORT of WEART's Middleware, whose TouchDIVER the fingers wear besides; empty: none
-  std::string pressure_hand = "right";      // which it is on: right or left
-  double full_pressure = 5;                 // force of its highest level [N]
+  std::string pressure;  // HOST:PORT of WEART's Middleware, whose TouchDIVER the fingers wear besides; empty: none
+  std::string pressure_hand = "right";  // which it is on: right or left
+  double full_pressure = 5;             // force of its highest level [N]
 };
 
-// Throws DeviceError. `kSim` and `kMouse` aren't opened here: a simulated participant brings its own devices, the mouse belongs to the viewer.
+// Throws DeviceError. `kSim` and `kMouse` aren't opened here: a simulated participant brings its own
+// devices, the mouse belongs to the viewer.
 std::unique_ptr<HandDevices> openHandDevices(const DeviceOptions& options);
 
 }  // namespace pincer::tasks

@@ -29,8 +29,8 @@ std::unique_ptr<devices::usb::UsbHost> startUsb();
 
 // Until `done`, but for `timeout` at the most [s]; whether it came true.
 bool waitUntil(const std::function<bool()>& done, double timeout);
-// The calibration values that the device itself keeps; none if it answers nothing for a second. Throws DeviceError where only a part of
-// them comes, or one is out of range.
+// The calibration values that the device itself keeps; none if it answers nothing for a second. Throws DeviceError
+// where only a part of them comes, or one is out of range.
 DeviceCalibration keptCalibration(devices::usb::DeviceLink& device);
 
 std::unique_ptr<HandDevices> openUsbHand(const DeviceOptions& options);

@@ -20,24 +20,26 @@ double valueOf(const DeviceCalibration& calibration, const char* name, double ot
 double forceOf(const DeviceCalibration& calibration, const char* name, double otherwise) {
   const double force = valueOf(calibration, name, otherwise);
   if (force > 0 && force <= devices::haply::kMostPeak) return force;
-  throw InputError(
-      fmt::format("calibration of {}: {} = {:g} is out of range (0, {:g}] N. Take it from the maker's data sheet, or leave it out.",
-                  calibration.serial, name, force, devices::haply::kMostPeak));
+  throw InputError(fmt::format(
+      "calibration of {}: {} = {:g} is out of range (0, {:g}] N. Take it from the maker's data sheet, or leave it out.",
+      calibration.serial, name, force, devices::haply::kMostPeak));
 }
 
 Quat alignmentOf(const DeviceCalibration& calibration, const std::string& grip) {
   if (grip.empty()) return Quat::Identity();
   if (!calibration.values.contains("align_w")) {
     throw InputError(
-        fmt::format("calibration of {}: it has no align_w, _x, _y, _z, and VerseGrip {} is to tell the finger's turn. Measure it: pincer "
+        fmt::format("calibration of {}: it has no align_w, _x, _y, _z, and VerseGrip {} is to tell the finger's turn. "
+                    "Measure it: pincer "
                     "devices calibrate {} --devices haply --grip {} --align index (or thumb); or leave --grips out.",
                     calibration.serial, grip, calibration.serial, grip));
   }
   const Quat q(calibration.values.at("align_w"), valueOf(calibration, "align_x", 0), valueOf(calibration, "align_y", 0),
                valueOf(calibration, "align_z", 0));
   if (std::abs(q.norm() - 1) <= devices::haply::kOffUnit) return q.normalized();
-  throw InputError(fmt::format("calibration of {}: align_w, _x, _y, _z have the norm {:g}, and a turn has 1. Measure it again (--align).",
-                               calibration.serial, q.norm()));
+  throw InputError(fmt::format(
+      "calibration of {}: align_w, _x, _y, _z have the norm {:g}, and a turn has 1. Measure it again (--align).",
+      calibration.serial, q.norm()));
 }
 
 }  // namespace

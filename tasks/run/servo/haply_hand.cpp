@@ -17,7 +17,8 @@ using devices::haply::HaplyHostOptions;
 
 class HaplyHand final : public HandDevices {
  public:
-  explicit HaplyHand(const DeviceOptions& options) : calibrations_(calibrationsOf(options)), host_(hostOptions(options)) {
+  explicit HaplyHand(const DeviceOptions& options)
+      : calibrations_(calibrationsOf(options)), host_(hostOptions(options)) {
     devices::haply::LastZero::install();
     host_.waitReady(std::max(options.timeout, 5.0));
     for (std::size_t i = 0; i < calibrations_.size(); ++i) bases_.push_back(armBaseIn(calibrations_[i]));
@@ -38,13 +39,13 @@ class HaplyHand final : public HandDevices {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < host_.arms(); ++i) {
       const auto& arm = host_.arm(i).settings();
-      lines.push_back(fmt::format("finger {}: Haply Inverse3 {}{}, {:g} N at peak, its mount turned by {:.0f} degrees", i, arm.id,
-                                  arm.grip.empty() ? ", no grip" : ", VerseGrip " + arm.grip, arm.peak_force,
+      lines.push_back(fmt::format("finger {}: Haply Inverse3 {}{}, {:g} N at peak, its mount turned by {:.0f} degrees",
+                                  i, arm.id, arm.grip.empty() ? ", no grip" : ", VerseGrip " + arm.grip, arm.peak_force,
                                   180 / std::numbers::pi * arm.frame.mount_turn));
     }
-    lines.push_back(
-        fmt::format("Haply's service {}.{}. Nobody here has tried it on hardware yet: the device's power switch is the last stop.",
-                    host_.version().major, host_.version().minor));
+    lines.push_back(fmt::format(
+        "Haply's service {}.{}. Nobody here has tried it on hardware yet: the device's power switch is the last stop.",
+        host_.version().major, host_.version().minor));
     return lines;
   }
 
@@ -53,8 +54,9 @@ class HaplyHand final : public HandDevices {
   static std::vector<DeviceCalibration> calibrationsOf(const DeviceOptions& options) {
     const auto fingers = static_cast<std::size_t>(options.fingers);
     if (options.arms.size() < fingers)
-      throw DeviceError(
-          fmt::format("--devices haply needs the ids of {} Inverse3: --arms 049D,04BA (pincer devices list --devices haply).", fingers));
+      throw DeviceError(fmt::format(
+          "--devices haply needs the ids of {} Inverse3: --arms 049D,04BA (pincer devices list --devices haply).",
+          fingers));
     std::vector<DeviceCalibration> chosen;
     for (std::size_t i = 0; i < fingers; ++i) {
       if (std::count(options.arms.begin(), options.arms.end(), options.arms[i]) > 1)
@@ -69,8 +71,10 @@ class HaplyHand final : public HandDevices {
     }
     if (alone) return uncalibratedHaply(id);
     throw DeviceError(
-        fmt::format("Inverse3 {} has no calibration file: how it stands isn't known, and forces would go elsewhere than the finger. Make "
-                    "one: pincer devices calibrate {} --devices haply --set mount_turn=0 --save {}.json, then --calibration {}.json "
+        fmt::format("Inverse3 {} has no calibration file: how it stands isn't known, and forces would go elsewhere "
+                    "than the finger. Make "
+                    "one: pincer devices calibrate {} --devices haply --set mount_turn=0 --save {}.json, then "
+                    "--calibration {}.json "
                     "(docs/devices/haply.md).",
                     id, id, id, id));
   }
@@ -79,9 +83,11 @@ class HaplyHand final : public HandDevices {
     usb_->waitFor(0, options.displays.size(), options.timeout);
     for (const std::string& serial : options.displays) {
       const auto all = usb_->displays();
-      const auto found = std::find_if(all.begin(), all.end(), [&](const auto* d) { return d->deviceIdentity().serial == serial; });
+      const auto found =
+          std::find_if(all.begin(), all.end(), [&](const auto* d) { return d->deviceIdentity().serial == serial; });
       if (found == all.end())
-        throw DeviceError(fmt::format("No display with serial number {} is plugged in. See which are: pincer devices list", serial));
+        throw DeviceError(
+            fmt::format("No display with serial number {} is plugged in. See which are: pincer devices list", serial));
       displays_.push_back(*found);
     }
   }
@@ -89,8 +95,9 @@ class HaplyHand final : public HandDevices {
     HaplyHostOptions host;
     const auto place = devices::haply::servicePlaceOf(options.service);
     if (!place)
-      throw InputError(
-          fmt::format("--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer, as 127.0.0.1:10001:10020.", options.service));
+      throw InputError(fmt::format(
+          "--service {}: it isn't HOST:PORT or HOST:PORT:EVENTS on this computer, as 127.0.0.1:10001:10020.",
+          options.service));
     host.service = *place;
     host.gate_gain = options.force_gate;
     for (std::size_t i = 0; i < calibrations_.size(); ++i)

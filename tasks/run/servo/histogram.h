@@ -1,4 +1,5 @@
-// histogram: how often a time took how long, in bins that grow by 1 / 8 octave: 9 % wide, from 1 ns to 18 s. Adding allocates nothing.
+// histogram: how often a time took how long, in bins that grow by 1 / 8 octave: 9 % wide,
+// from 1 ns to 18 s. Adding allocates nothing.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -25,8 +26,8 @@ class Histogram {
   std::int64_t count() const { return count_; }
   double largest() const { return largest_; }  // [s]
 
-  // Upper edge of the bin in which the share `q` (0 .. 1) is reached [s]; 0 when empty. From 1 ns to 18 s at most 9 % above the true
-  // quantile (nearest rank).
+  // Upper edge of the bin in which the share `q` (0 .. 1) is reached [s]; 0 when empty. From 1 ns to 18 s at most 9
+  // % above the true quantile (nearest rank).
   double quantile(double q) const {
     PINCER_ASSERT(0 <= q && q <= 1);
     const auto wanted = static_cast<std::int64_t>(std::ceil(q * static_cast<double>(count_)));

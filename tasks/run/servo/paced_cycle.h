@@ -1,5 +1,6 @@
-// paced_cycle: lets somebody who watches pause a cycle, take single ticks and slow it down. The inner cycle has its own time, which only its
-// ticks move; it can't tell that it is held. Not for devices that render forces to a person: those need every tick.
+// paced_cycle: lets somebody who watches pause a cycle, take single ticks and slow it down. The inner cycle
+// has its own time, which only its ticks move; it can't tell that it is held. Not for devices that render
+// forces to a person: those need every tick.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -18,7 +19,8 @@ struct PaceControl {
   std::atomic<bool> stop{false};     // ends the cycle
   std::atomic<bool> ended{false};    // told by the servo: the cycle is over
   std::atomic<bool> linger{false};   // a cycle that is over goes on without ticks, to be looked at
-  std::atomic<double> late{-1};      // told by the servo: how late the last tick began, against the one before [s]; negative: none yet
+  // told by the servo: how late the last tick began, against the one before [s]; negative: none yet
+  std::atomic<double> late{-1};
 };
 
 class PacedCycle final : public ServoCycle {

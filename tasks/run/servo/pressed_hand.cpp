@@ -24,8 +24,9 @@ WeartOptions weartOf(const DeviceOptions& options) {
   const char* const digits = colon == std::string::npos ? end : options.pressure.data() + colon + 1;
   const auto read = std::from_chars(digits, end, weart.port);
   if (colon == 0 || colon == std::string::npos || read.ec != std::errc{} || read.ptr != end || weart.port == 0)
-    throw InputError(fmt::format("--pressure {}: it isn't HOST:PORT. WEART's Middleware listens at 13031: --pressure 127.0.0.1:13031.",
-                                 options.pressure));
+    throw InputError(fmt::format(
+        "--pressure {}: it isn't HOST:PORT. WEART's Middleware listens at 13031: --pressure 127.0.0.1:13031.",
+        options.pressure));
   weart.host = options.pressure.substr(0, colon);
   weart.hand = options.pressure_hand == "left" ? HandSide::kLeft : HandSide::kRight;
   weart.thimbles = {Thimble::kIndex, Thimble::kThumb};
@@ -53,7 +54,8 @@ class PressedHand final : public HandDevices {
   std::vector<std::string> describe() override {
     std::vector<std::string> lines = hand_->describe();
     lines.push_back(
-        fmt::format("WEART TouchDIVER on the {} hand, by {}: pressure without a place, its highest level at {:g} N of normal force. Nobody "
+        fmt::format("WEART TouchDIVER on the {} hand, by {}: pressure without a place, its highest level at {:g} N of "
+                    "normal force. Nobody "
                     "here has tried it on "
                     "hardware yet.",
                     options_.pressure_hand, options_.pressure, options_.full_pressure));

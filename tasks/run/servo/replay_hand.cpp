@@ -56,7 +56,8 @@ FingerColumns columnsOf(const std::string& path, const std::vector<std::string>&
     if (all) return columns;
   }
   throw InputError(fmt::format(
-      "{}:1: columns f{}_p_WF_x_m, _y_m, _z_m (or p_DF, in the arm's frame) are missing. `pincer export` writes them.", path, finger));
+      "{}:1: columns f{}_p_WF_x_m, _y_m, _z_m (or p_DF, in the arm's frame) are missing. `pincer export` writes them.",
+      path, finger));
 }
 
 double numberIn(const std::string& path, int line, const std::vector<std::string>& row, std::size_t column) {
@@ -64,7 +65,8 @@ double numberIn(const std::string& path, int line, const std::vector<std::string
   const std::string text = column < row.size() ? row[column] : "";
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
-    throw InputError(fmt::format("{}:{}: \"{}\" in column {} isn't a number.", path, line, printable(text), column + 1));
+    throw InputError(
+        fmt::format("{}:{}: \"{}\" in column {} isn't a number.", path, line, printable(text), column + 1));
   }
   return value;
 }
@@ -105,13 +107,13 @@ class ReplayRecording {
     std::vector<ReplayPoint>& points = places_[finger];
     for (int k = 0; k < 3; ++k) {
       if (!isWithin(point.p_DF[k], ranges::kCoordinate))
-        throw InputError(
-            fmt::format("{}: finger {} is at {:g} m, which {}", place, finger, point.p_DF[k], outOfRange(ranges::kCoordinate)));
+        throw InputError(fmt::format("{}: finger {} is at {:g} m, which {}", place, finger, point.p_DF[k],
+                                     outOfRange(ranges::kCoordinate)));
     }
     if (!points.empty()) {
       const ReplayPoint& last = points.back();
-      const std::string problem =
-          problemBetween({last.time, last.p_DF, Vec3::Zero()}, {point.time, point.p_DF, Vec3::Zero()}, ranges::kFastest);
+      const std::string problem = problemBetween({last.time, last.p_DF, Vec3::Zero()},
+                                                 {point.time, point.p_DF, Vec3::Zero()}, ranges::kFastest);
       if (!problem.empty()) throw InputError(fmt::format("{}: finger {}: {}", place, finger, problem));
     }
     points.push_back(point);
@@ -125,7 +127,9 @@ class ReplayRecording {
     const auto time = columnOf(header, "time_s"), trial = columnOf(header, "trial");
     if (!time) throw InputError(path + ":1: column time_s is missing. `pincer export` writes it.");
     for (int i = 0; i < fingers; ++i) columns_.push_back(columnsOf(path, header, i));
-    const auto trialOf = [&](const std::vector<std::string>& row) { return trial && *trial < row.size() ? row[*trial] : ""; };
+    const auto trialOf = [&](const std::vector<std::string>& row) {
+      return trial && *trial < row.size() ? row[*trial] : "";
+    };
     std::optional<std::string> first_trial;
     for (int number = 2; file.nextLine(line); ++number) {
       const auto row = csvCells(line);
@@ -144,7 +148,8 @@ class ReplayRecording {
 
 class ReplayHand final : public HandDevices {
  public:
-  explicit ReplayHand(const DeviceOptions& options) : path_(options.recording), recording_(options.recording, options.fingers) {
+  explicit ReplayHand(const DeviceOptions& options)
+      : path_(options.recording), recording_(options.recording, options.fingers) {
     for (int i = 0; i < options.fingers; ++i) place(i, recording_.places(i));
   }
   devices::Arm& arm(int finger) override { return *arms_[static_cast<std::size_t>(finger)]; }
@@ -167,7 +172,8 @@ class ReplayHand final : public HandDevices {
   void place(int finger, const std::vector<ReplayPoint>& points) {
     arms_.resize(std::max(arms_.size(), static_cast<std::size_t>(finger) + 1));
     try {
-      arms_[static_cast<std::size_t>(finger)] = std::make_unique<ReplayArm>(fmt::format("{} f{}", path_, finger), points);
+      arms_[static_cast<std::size_t>(finger)] =
+          std::make_unique<ReplayArm>(fmt::format("{} f{}", path_, finger), points);
     } catch (const std::invalid_argument& error) {
       throw InputError(error.what());
     }
@@ -182,7 +188,8 @@ class ReplayHand final : public HandDevices {
 
 std::unique_ptr<HandDevices> openReplayHand(const DeviceOptions& options) {
   if (options.recording.empty())
-    throw DeviceError("--devices replay needs the recording: --recording FILE, a session.db, or a CSV of samples (pincer export).");
+    throw DeviceError(
+        "--devices replay needs the recording: --recording FILE, a session.db, or a CSV of samples (pincer export).");
   return std::make_unique<ReplayHand>(options);
 }
 

@@ -52,9 +52,11 @@ class RealTimePriority {
 
   std::string note() const {
     std::string text;
-    if (!fifo_) text += "Real-time priority (SCHED_FIFO) isn't permitted: ticks may be late. Allow rtprio 80 in limits.conf.";
+    if (!fifo_)
+      text += "Real-time priority (SCHED_FIFO) isn't permitted: ticks may be late. Allow rtprio 80 in limits.conf.";
     if (!fifo_ && !locked_) text += "\n";
-    if (!locked_) text += "Locked memory (mlockall) isn't permitted: a page fault may delay a tick. Allow memlock in limits.conf.";
+    if (!locked_)
+      text += "Locked memory (mlockall) isn't permitted: a page fault may delay a tick. Allow memlock in limits.conf.";
     return text;
   }
 
@@ -83,7 +85,9 @@ class WatchdogThread {
   void feed() { dog_.feed(nowNs()); }
   // From the servo thread, after a tick: copies what is asked for, allocates nothing.
   void offer(const ServoReport& report) {
-    if (!show_ || g_report_requests.load(std::memory_order_relaxed) == answered_ || copied_.load(std::memory_order_acquire)) return;
+    if (!show_ || g_report_requests.load(std::memory_order_relaxed) == answered_ ||
+        copied_.load(std::memory_order_acquire))
+      return;
     answered_ = g_report_requests.load(std::memory_order_relaxed);
     copy_.ticks = report.ticks;
     copy_.missed = report.missed;
@@ -144,13 +148,15 @@ bool timedTick(ServoCycle& cycle, double now, ServoReport& report) {
 }
 
 // Both return whether the cycle had more to do.
-bool runVirtual(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
+bool runVirtual(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted,
+                ServoReport& report) {
   bool more = true;
   while (more && !interrupted) more = timedTick(cycle, static_cast<double>(report.ticks) / options.rate, report);
   return more;
 }
 
-bool runByTheClock(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted, ServoReport& report) {
+bool runByTheClock(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted,
+                   ServoReport& report) {
   const bool real = options.clock == ServoClock::kReal;
   const RealTimePriority priority;
   report.note = priority.note();
@@ -164,7 +170,8 @@ bool runByTheClock(const ServoOptions& options, ServoCycle& cycle, const std::at
     report.lateness.add(1e-9 * static_cast<double>(late));
     report.missed += late / period;
     slot += late / period;
-    const double now = real ? 1e-9 * static_cast<double>(slot * period) : static_cast<double>(report.ticks) / options.rate;
+    const double now =
+        real ? 1e-9 * static_cast<double>(slot * period) : static_cast<double>(report.ticks) / options.rate;
     more = timedTick(cycle, now, report);
     dog.feed();
     dog.offer(report);
@@ -182,7 +189,8 @@ void ServoReport::add(const ServoReport& other) {
   lateness.add(other.lateness);
   duration.add(other.duration);
   for (const StageTimes& stage : other.stages) {
-    const auto same = std::find_if(stages.begin(), stages.end(), [&](const StageTimes& s) { return s.name == stage.name; });
+    const auto same =
+        std::find_if(stages.begin(), stages.end(), [&](const StageTimes& s) { return s.name == stage.name; });
     same == stages.end() ? stages.push_back(stage) : same->times.add(stage.times);
   }
   wall += other.wall;
@@ -194,7 +202,8 @@ void ServoReport::add(const ServoReport& other) {
 void requestServoReport() noexcept { g_report_requests.fetch_add(1); }
 
 ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted) {
-  if (!(options.rate >= 100 && options.rate <= 4000)) throw std::invalid_argument("servo rate out of range [100, 4000] Hz");
+  if (!(options.rate >= 100 && options.rate <= 4000))
+    throw std::invalid_argument("servo rate out of range [100, 4000] Hz");
   if (!(options.watchdog > 0)) throw std::invalid_argument("servo watchdog must be positive");
   ServoReport report;
   const std::int64_t start = nowNs();

@@ -1,13 +1,15 @@
 // servo: the clock of a session, which the cycle that it drives can't tell from another one.
 //
 //   virtual   ticks follow each other as fast as they go
-//   paced     one every 1/rate of the system's monotonic clock at the most. The cycle's time is that of its ticks: where the machine is late,
-//             it stands still, and what comes out is the same to the bit. For what has no motors: simulated devices, a mouse, a recording
-//   real      the wall clock's time: a tick whose time has passed is skipped. For motors that somebody feels: a second thread watches, and no
-//             finished tick for `watchdog` seconds cuts the forces, latched
+//   paced     one every 1/rate of the system's monotonic clock at the most. The cycle's time is that of its ticks:
+//             where the machine is late, it stands still, and what comes out is the same to the bit. For what has no
+//             motors: simulated devices, a mouse, a recording
+//   real      the wall clock's time: a tick whose time has passed is skipped. For motors that somebody feels: a second
+//             thread watches, and no finished tick for `watchdog` seconds cuts the forces, latched
 //
-// Paced and real: clock_nanosleep to absolute times, SCHED_FIFO and mlockall when permitted (a note says so when not). Ticks that come too late
-// are counted, never caught up. On SIGUSR1 (requestServoReport) a second thread shows how it has gone so far; the servo's only copies its numbers.
+// Paced and real: clock_nanosleep to absolute times, SCHED_FIFO and mlockall when permitted (a note says so when not).
+// Ticks that come too late are counted, never caught up. On SIGUSR1 (requestServoReport) a second thread shows how it
+// has gone so far; the servo's only copies its numbers.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -65,8 +67,8 @@ struct ServoReport {
 // Asks every servo that runs by the wall clock to show how it goes; safe in a signal handler.
 void requestServoReport() noexcept;
 
-// Runs `cycle` until it is done or `interrupted` becomes true. An exception from a tick cuts the forces and is passed on. Throws
-// std::invalid_argument for options out of range.
+// Runs `cycle` until it is done or `interrupted` becomes true. An exception from a tick cuts the forces and is passed
+// on. Throws std::invalid_argument for options out of range.
 ServoReport runServo(const ServoOptions& options, ServoCycle& cycle, const std::atomic<bool>& interrupted);
 
 }  // namespace pincer::tasks

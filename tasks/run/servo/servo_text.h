@@ -6,8 +6,8 @@
 
 namespace pincer::tasks {
 
-// A few lines without a newline at the end: ticks done and missed, how late they began and how long they took, what went wrong, and what the
-// system didn't permit. `period`: of a tick [s].
+// A few lines without a newline at the end: ticks done and missed, how late they began and how long they took, what
+// went wrong, and what the system didn't permit. `period`: of a tick [s].
 std::string servoText(const ServoReport& report, double period);
 
 // How much was simulated [s] in the processor time that the program has used so far, in one line.

@@ -56,7 +56,8 @@ class Fit {
     for (int k = 0; k < kMostSteps; ++k) {
       Unknowns rhs;
       const Normal N = normal(x, rhs);
-      // A hair of damping: where all directions of the gaps are alike, d and t can't be told apart, and the errors below say so.
+      // A hair of damping: where all directions of the gaps are alike, d and t can't be
+      // told apart, and the errors below say so.
       const Unknowns step = (N + 1e-9 * Normal::Identity()).ldlt().solve(rhs);
       double share = 1;
       while (share > 1e-6 && squares(x - share * step) > now) share *= 0.5;
@@ -104,7 +105,8 @@ Unknowns bestOf(const Fit& fit) {
   return best;
 }
 
-// The place without which the others fit best, and how far it is from their fit. (The largest error of a common fit may be a sound place's.)
+// The place without which the others fit best, and how far it is from their fit. (The largest error
+// of a common fit may be a sound place's.)
 void findWorst(std::span<const HandleTouch> touches, const Vec3& reset_B_W, TouchFinding& found) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < touches.size(); ++i) {
@@ -123,7 +125,8 @@ void findWorst(std::span<const HandleTouch> touches, const Vec3& reset_B_W, Touc
 
 TouchFinding findBase(std::span<const HandleTouch> touches, const Vec3& reset_B_W) {
   if (touches.size() < kFewestTouches)
-    throw InputError(fmt::format("{} places are too few: hold the handles together at {} or more.", touches.size(), kFewestTouches));
+    throw InputError(
+        fmt::format("{} places are too few: hold the handles together at {} or more.", touches.size(), kFewestTouches));
   const Fit fit(touches, reset_B_W);
   const Unknowns best = bestOf(fit);
   TouchFinding found{{best.segment<3>(1), best[0]}, best[4]};
@@ -142,12 +145,14 @@ TouchFinding findBase(std::span<const HandleTouch> touches, const Vec3& reset_B_
 std::string touchOddity(const TouchFinding& found) {
   if (found.residual > kMostResidual) {
     return fmt::format(
-        "The places don't fit: {:.1f} mm (rms), place {} by {:.1f} mm. The handles weren't together there, or one let go. Again.",
+        "The places don't fit: {:.1f} mm (rms), place {} by {:.1f} mm. The handles weren't together there, or one let "
+        "go. Again.",
         1e3 * found.residual, found.worst + 1, 1e3 * found.worst_error);
   }
   if (!(found.sure_offset <= kMostOffsetError) || !(found.sure_turn <= kMostTurnError)) {
     return fmt::format(
-        "The places don't say it well enough: {:.1f} mm and {:.2f} degrees may be wrong. Go farther apart with them, and turn the pair of "
+        "The places don't say it well enough: {:.1f} mm and {:.2f} degrees may be wrong. Go farther apart with them, "
+        "and turn the pair of "
         "handles about each other: one above the other, beside it, before it.",
         1e3 * found.sure_offset, 180 / std::numbers::pi * found.sure_turn);
   }

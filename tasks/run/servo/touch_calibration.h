@@ -1,6 +1,7 @@
 // touch_calibration: where one arm stands beside another, found by holding the two handles together at several places.
 //
-//   | p_A - (c + t + Rz(psi) (p_B - c)) | = d      at every place: p_A, p_B where the handles' middles are in W as if both arms stood as they were told to
+//   | p_A - (c + t + Rz(psi) (p_B - c)) | = d      at every place: p_A, p_B where the handles' middles are in W
+//                                                  as if both arms stood as they were told to
 //
 //   c       reset place of arm B in W [m]; its base turns about the vertical through it
 //   t, psi  by how much B's base is off that: offset [m], turn about W's z [rad] (ArmBase)

@@ -19,7 +19,8 @@ using devices::usb::UsbHost;
 
 std::string listOf(UsbHost& host) {
   std::vector<std::string> names;
-  for (UsbArm* arm : host.arms()) names.push_back(fmt::format("{} ({})", arm->identity(), devices::nameOf(arm->state())));
+  for (UsbArm* arm : host.arms())
+    names.push_back(fmt::format("{} ({})", arm->identity(), devices::nameOf(arm->state())));
   for (UsbDisplay* display : host.displays())
     names.push_back(fmt::format("{} ({})", display->identity(), devices::nameOf(display->state())));
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
@@ -27,11 +28,14 @@ std::string listOf(UsbHost& host) {
 
 // The finger's device: the one asked for, or the next in the order of the serial numbers.
 template <typename Device>
-Device* chosenDevice(const std::vector<Device*>& all, const std::vector<std::string>& serials, std::size_t finger, const char* kind) {
+Device* chosenDevice(const std::vector<Device*>& all, const std::vector<std::string>& serials, std::size_t finger,
+                     const char* kind) {
   if (finger >= serials.size()) return finger < all.size() ? all[finger] : nullptr;
-  const auto found = std::find_if(all.begin(), all.end(), [&](Device* d) { return d->deviceIdentity().serial == serials[finger]; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](Device* d) { return d->deviceIdentity().serial == serials[finger]; });
   if (found != all.end()) return *found;
-  throw DeviceError(fmt::format("No {} with serial number {} is plugged in. See which are: pincer devices list", kind, serials[finger]));
+  throw DeviceError(fmt::format("No {} with serial number {} is plugged in. See which are: pincer devices list", kind,
+                                serials[finger]));
 }
 
 class UsbHand final : public HandDevices {
@@ -52,12 +56,14 @@ class UsbHand final : public HandDevices {
   devices::Arm& arm(int finger) override { return *arms_[static_cast<std::size_t>(finger)]; }
   devices::TactileDisplay* display(int finger) override { return displays_[static_cast<std::size_t>(finger)]; }
   void setEpoch(std::int64_t ns) override { host_.setEpoch(ns); }
-  void sound(DeviceTone tone) override { arms_[0]->signal(static_cast<devices::usb::Signal>(static_cast<int>(tone) + 1)); }
+  void sound(DeviceTone tone) override {
+    arms_[0]->signal(static_cast<devices::usb::Signal>(static_cast<int>(tone) + 1));
+  }
   std::vector<std::string> describe() override {
     std::vector<std::string> lines;
     for (std::size_t i = 0; i < arms_.size(); ++i) {
-      lines.push_back(fmt::format("finger {}: {}, {}{}", i, arms_[i]->identity(), displays_[i] ? displays_[i]->identity() : "no display",
-                                  describe(bases_[i])));
+      lines.push_back(fmt::format("finger {}: {}, {}{}", i, arms_[i]->identity(),
+                                  displays_[i] ? displays_[i]->identity() : "no display", describe(bases_[i])));
     }
     return lines;
   }
@@ -65,18 +71,19 @@ class UsbHand final : public HandDevices {
  private:
   static std::string describe(const ArmBase& base) {
     if (base.offset_W.isZero(0) && base.turn == 0) return "";
-    return fmt::format("; its base is off by {:.1f}, {:.1f}, {:.1f} mm and turned by {:.1f} degrees", 1e3 * base.offset_W.x(),
-                       1e3 * base.offset_W.y(), 1e3 * base.offset_W.z(), 180 / std::numbers::pi * base.turn);
+    return fmt::format("; its base is off by {:.1f}, {:.1f}, {:.1f} mm and turned by {:.1f} degrees",
+                       1e3 * base.offset_W.x(), 1e3 * base.offset_W.y(), 1e3 * base.offset_W.z(),
+                       180 / std::numbers::pi * base.turn);
   }
   // A file counts over what the arm itself keeps.
   void calibrate(const std::string& path) {
     const DeviceCalibration calibration = readCalibration(path);
-    const auto found =
-        std::find_if(arms_.begin(), arms_.end(), [&](UsbArm* a) { return a->deviceIdentity().serial == calibration.serial; });
+    const auto found = std::find_if(arms_.begin(), arms_.end(),
+                                    [&](UsbArm* a) { return a->deviceIdentity().serial == calibration.serial; });
     if (found == arms_.end()) {
-      throw InputError(
-          fmt::format("{}: it is of device {}, and no finger wears that arm. Give the files of the session's arms (found: {}).", path,
-                      calibration.serial, listOf(host_)));
+      throw InputError(fmt::format(
+          "{}: it is of device {}, and no finger wears that arm. Give the files of the session's arms (found: {}).",
+          path, calibration.serial, listOf(host_)));
     }
     bases_[static_cast<std::size_t>(found - arms_.begin())] = armBaseIn(calibration);
   }
@@ -85,7 +92,8 @@ class UsbHand final : public HandDevices {
     std::string why = fmt::format("A session needs {} arms{} on USB; found: {}.", options.fingers,
                                   options.needs_displays ? " and as many displays" : "", listOf(host_));
     for (const std::string& problem : problems) why += "\n" + problem;
-    if (problems.empty()) why += " Plug them in and switch them on; see what is there: pincer devices list (docs/devices/setup.md)";
+    if (problems.empty())
+      why += " Plug them in and switch them on; see what is there: pincer devices list (docs/devices/setup.md)";
     throw DeviceError(why);
   }
 
@@ -118,15 +126,15 @@ DeviceCalibration keptCalibration(devices::usb::DeviceLink& device) {
   };
   if (!waitUntil([&] { return whole() || device.calibrationSize() > 0; }, 1)) return kept;
   if (!waitUntil(whole, 3)) {
-    throw DeviceError(fmt::format("{} tells only {} of its {} calibration values. Unplug it and plug it in again.", kept.serial,
-                                  kept.values.size(), device.calibrationSize()));
+    throw DeviceError(fmt::format("{} tells only {} of its {} calibration values. Unplug it and plug it in again.",
+                                  kept.serial, kept.values.size(), device.calibrationSize()));
   }
   for (const auto& [name, value] : kept.values) {
     if (calibrationIsSound(value)) continue;
-    throw DeviceError(
-        fmt::format("{}: its calibration value {} = {} is out of range [-10, 10] (m or rad). Set it: pincer devices calibrate "
-                    "{} --set {}=VALUE",
-                    kept.serial, name, value, kept.serial, name));
+    throw DeviceError(fmt::format(
+        "{}: its calibration value {} = {} is out of range [-10, 10] (m or rad). Set it: pincer devices calibrate "
+        "{} --set {}=VALUE",
+        kept.serial, name, value, kept.serial, name));
   }
   return kept;
 }

@@ -27,7 +27,8 @@ std::string bidsLabel(const std::string& text) {
 
 std::string subjectOf(std::int64_t participant) { return fmt::format("sub-{:02}", participant + 1); }
 
-// BIDS knows no quotes: a tab or line end in a text is written \\t, \\n or \\r, a backslash twice. Spreadsheets read these files too.
+// BIDS knows no quotes: a tab or line end in a text is written \\t, \\n or \\r, a backslash
+// twice. Spreadsheets read these files too.
 std::string tsvText(const std::string& text) {
   if (text.empty()) return "n/a";
   std::string field;
@@ -143,23 +144,28 @@ class DataSet {
     std::string rows = "participant_id\tmoment\titem\ttask\tcondition\tquestion\tanswer\tanswer_value\n";
     for (const SurveyRecord& r : survey) {
       rows += subjectOf(r.participant);
-      for (const std::string* text : {&r.moment, &r.item, &r.task, &r.condition, &r.question, &r.answer}) rows += "\t" + tsvText(*text);
+      for (const std::string* text : {&r.moment, &r.item, &r.task, &r.condition, &r.question, &r.answer})
+        rows += "\t" + tsvText(*text);
       rows += "\t" + tsvField(r.answer_value) + "\n";
     }
     write("phenotype/survey.tsv", rows);
-    std::string json = "{\n  \"MeasurementToolMetadata\": {\"Description\": \"questions of the study's file, asked by pincer\"}";
+    std::string json =
+        "{\n  \"MeasurementToolMetadata\": {\"Description\": \"questions of the study's file, asked by pincer\"}";
     const SurveyRecord names{};
     forEachColumn(names, [&](const ColumnName& name, const auto&) {
-      if (name.quantity != "participant") json += fmt::format(",\n  \"{}\": {}", name.text(), describedJson("survey", name));
+      if (name.quantity != "participant")
+        json += fmt::format(",\n  \"{}\": {}", name.text(), describedJson("survey", name));
     });
     write("phenotype/survey.json", json + "\n}\n");
   }
 
   void writeParticipants() {
     std::string people = "participant_id\tfirst_condition\n";
-    for (const auto& [person, condition] : first_conditions_) people += fmt::format("{}\t{}\n", subjectOf(person), tsvText(condition));
+    for (const auto& [person, condition] : first_conditions_)
+      people += fmt::format("{}\t{}\n", subjectOf(person), tsvText(condition));
     write("participants.tsv", people);
-    write("participants.json", "{\n  \"first_condition\": {\"Description\": \"condition that the participant did first\"}\n}\n");
+    write("participants.json",
+          "{\n  \"first_condition\": {\"Description\": \"condition that the participant did first\"}\n}\n");
   }
 
   std::vector<std::string> paths;
@@ -179,11 +185,14 @@ std::string descriptionOf(const SessionInfo& info) {
 std::string readmeOf(const SessionReader& session) {
   const SessionInfo& info = session.info();
   return fmt::format(
-      "# {}\n\nA session of pincer {}, seed {}, begun {}. One row per trial, in the order of doing. In a text, \\t, \\n, \\r and "
-      "\\\\ stand for tab, line feed, carriage return and backslash; an apostrophe before = + - @ keeps spreadsheets from running "
+      "# {}\n\nA session of pincer {}, seed {}, begun {}. One row per trial, in the order of doing. In a text, \\t, "
+      "\\n, \\r and "
+      "\\\\ stand for tab, line feed, carriage return and backslash; an apostrophe before = + - @ keeps spreadsheets "
+      "from running "
       "it.\n\nDevices:\n\n```json\n{}\n```\n\n"
       "Protocol:\n\n```json\n{}\n```\n\nParticipants (of simulated ones every parameter):\n\n```json\n{}\n```\n",
-      info.task, info.version, info.seed, session.startedUtc(), info.devices_json, info.protocol_json, info.participants_json);
+      info.task, info.version, info.seed, session.startedUtc(), info.devices_json, info.protocol_json,
+      info.participants_json);
 }
 
 }  // namespace

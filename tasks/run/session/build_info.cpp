@@ -24,7 +24,9 @@ std::string modelOfProcessor() {
 std::string instructionSets() {
   std::string sets;
 #if defined(__x86_64__)
-  const auto add = [&](const char* name, int has) { sets += has ? fmt::format("{}{}", sets.empty() ? "" : " ", name) : ""; };
+  const auto add = [&](const char* name, int has) {
+    sets += has ? fmt::format("{}{}", sets.empty() ? "" : " ", name) : "";
+  };
   add("avx", __builtin_cpu_supports("avx"));
   add("avx2", __builtin_cpu_supports("avx2"));
   add("fma", __builtin_cpu_supports("fma"));

@@ -32,7 +32,8 @@ std::string shown(const Cell& cell) {
 
 void Cell::refuse(const std::string& wanted) const {
   throw InputError(
-      fmt::format("{}: table {}, row {}: {} = {} isn't {}. The file is damaged, or something else than pincer changed it. Take a copy of "
+      fmt::format("{}: table {}, row {}: {} = {} isn't {}. The file is damaged, or something else than pincer changed "
+                  "it. Take a copy of "
                   "before; `sqlite3 FILE .recover` may save the other rows.",
                   row.database().path(), table, row_number, name.text(), shown(*this), wanted));
 }

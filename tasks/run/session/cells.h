@@ -1,4 +1,5 @@
-// cells: a value of a session's file, checked as it is read: its type, then its column's range (columns.h). Internal to the session store.
+// cells: a value of a session's file, checked as it is read: its type, then its column's range
+// (columns.h). Internal to the session store.
 //
 //   a.db: table trial, row 3: mu_s = -0.3 isn't a number in [0, 1000000]. The file is damaged, or ...
 //

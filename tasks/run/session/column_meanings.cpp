@@ -13,7 +13,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr std::string_view kNoYes = "0=no;1=yes";
-constexpr std::string_view kConditions = "force=force only: the tactors stay parked;cld+force=contact location display and force";
+constexpr std::string_view kConditions =
+    "force=force only: the tactors stay parked;cld+force=contact location display and force";
 
 // One quantity of a table; of any table, where `table` is empty. Levels: value=meaning, separated by semicolons.
 struct DescribedQuantity {
@@ -26,15 +27,18 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"", "time", "time since the trial began"},
     DescribedQuantity{
         "event", "kind", "what happened",
-        "tone=a tone sounded, detail says which;phase=the participant began another phase;key=a person pressed a key;squeeze=both fingers "
-        "pressed the object to lift it;lift=the object left the dish;try_5mm=it rose over 5 mm;slip=a finger slid on it;drop=it fell back;"
-        "failure=a squeeze failed, detail says how;turn=a grip turned the cylinder;answer=the participant answered;success=the trial "
+        "tone=a tone sounded, detail says which;phase=the participant began another phase;key=a person pressed a "
+        "key;squeeze=both fingers "
+        "pressed the object to lift it;lift=the object left the dish;try_5mm=it rose over 5 mm;slip=a finger slid on "
+        "it;drop=it fell back;"
+        "failure=a squeeze failed, detail says how;turn=a grip turned the cylinder;answer=the participant "
+        "answered;success=the trial "
         "succeeded;timeout=its time was over;fault=a safety limit ended it;gate_trip=forces were cut, detail says why"},
     DescribedQuantity{"event", "detail", "more of it, a line; may be empty"},
-    DescribedQuantity{
-        "reading", "kind", "which sense was read",
-        "place=offset of the object's centre from the middle of the fingertips, m;flat=direction of the flat: angle, spread, 0, "
-        "rad;grip=mean of the two pushes, 0, 0, N"},
+    DescribedQuantity{"reading", "kind", "which sense was read",
+                      "place=offset of the object's centre from the middle of the fingertips, m;flat=direction of the "
+                      "flat: angle, spread, 0, "
+                      "rad;grip=mean of the two pushes, 0, 0, N"},
     DescribedQuantity{"reading", "truth", "what there was to read"},
     DescribedQuantity{"reading", "percept", "what the senses said; nan where they said nothing"},
     DescribedQuantity{"reading", "estimate", "what the participant believed after it"},
@@ -48,20 +52,24 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"trial", "mu_s", "static friction coefficient of the object; 0 where the task has none"},
     DescribedQuantity{"trial", "mu_d", "dynamic friction coefficient of the object; 0 where the task has none"},
     DescribedQuantity{"trial", "outcome", "how the trial ended",
-                      "success=as asked;timeout=its time was over: counts and times are lower bounds;fault=a safety limit cut the forces"},
+                      "success=as asked;timeout=its time was over: counts and times are lower bounds;fault=a safety "
+                      "limit cut the forces"},
     DescribedQuantity{"trial", "duration", "from the start tone to the end"},
     DescribedQuantity{"trial", "squeezes", "squeezes with the intent to lift: both normal forces over 0.2 N"},
     DescribedQuantity{"trial", "lifts", "times that the object's bottom left the dish"},
     DescribedQuantity{"trial", "tries_5mm", "times that it cleared 5 mm"},
     DescribedQuantity{"trial", "slips", "times that a loaded finger slid on the object"},
     DescribedQuantity{"trial", "drops", "times that it fell back after it had been held"},
-    DescribedQuantity{
-        "trial", "cause", "why the last failed squeeze failed; empty: none did",
-        "not lifted=it stayed on the dish;slipped=it never cleared 5 mm;squeezed out=it went aside;dropped=it fell from more than 5 mm"},
+    DescribedQuantity{"trial", "cause", "why the last failed squeeze failed; empty: none did",
+                      "not lifted=it stayed on the dish;slipped=it never cleared 5 mm;squeezed out=it went "
+                      "aside;dropped=it fell from more than 5 mm"},
     DescribedQuantity{"trial", "peak_grip", "largest mean of the two normal forces"},
-    DescribedQuantity{"trial", "grip_ratio", "grip while held over the smallest that holds, m g / (2 mu_s); nan if never held"},
-    DescribedQuantity{"trial", "offset_at_squeeze", "distance of the contacts from the line through opposite points, at the last squeeze"},
-    DescribedQuantity{"trial", "felt_grip", "grip that a simulated participant felt when the last squeeze seemed firm enough"},
+    DescribedQuantity{"trial", "grip_ratio",
+                      "grip while held over the smallest that holds, m g / (2 mu_s); nan if never held"},
+    DescribedQuantity{"trial", "offset_at_squeeze",
+                      "distance of the contacts from the line through opposite points, at the last squeeze"},
+    DescribedQuantity{"trial", "felt_grip",
+                      "grip that a simulated participant felt when the last squeeze seemed firm enough"},
     DescribedQuantity{"trial", "true_grip", "grip that it was then"},
     DescribedQuantity{"trial", "start_angle", "direction of the flat from its target at the start"},
     DescribedQuantity{"trial", "error", "direction of the flat from its target at the end, from -pi to pi"},
@@ -73,12 +81,14 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"response", "run", "staircase or list of trials of the participant, from 1"},
     DescribedQuantity{"response", "place_in_run", "place of the trial in its run, from 1"},
     DescribedQuantity{"response", "stimulus", "what was shown, where it has a name"},
-    DescribedQuantity{"response", "level",
-                      "what was shown, as a number: turn between segments in rad, backlash in m, delay in s, place in m"},
+    DescribedQuantity{
+        "response", "level",
+        "what was shown, as a number: turn between segments in rad, backlash in m, delay in s, place in m"},
     DescribedQuantity{"response", "interval", "interval that would have been right, of two; 0: there was one only",
                       "0=one only;1=the first;2=the second"},
     DescribedQuantity{"response", "answer", "answer in words"},
-    DescribedQuantity{"response", "answer_value", "answer as a number; of solids, how sure a simulated participant was, from 0 to 1"},
+    DescribedQuantity{"response", "answer_value",
+                      "answer as a number; of solids, how sure a simulated participant was, from 0 to 1"},
     DescribedQuantity{"response", "correct", "the answer was right", kNoYes},
     DescribedQuantity{"response", "reversal", "the staircase turned here", kNoYes},
     DescribedQuantity{"response", "outcome", "how the trial ended",
@@ -86,8 +96,10 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"response", "duration", "time in which something was felt or could be"},
     DescribedQuantity{"response", "response_time", "from the end of the last stimulus to the answer"},
     DescribedQuantity{"response", "contact_share", "share of the duration in which the finger touched"},
-    DescribedQuantity{"response", "finger_speed", "mean speed of the finger while it touched and moved; nan if it didn't"},
-    DescribedQuantity{"response", "tactor_speed", "mean speed of the tactor on the pad while it moved; nan if it didn't"},
+    DescribedQuantity{"response", "finger_speed",
+                      "mean speed of the finger while it touched and moved; nan if it didn't"},
+    DescribedQuantity{"response", "tactor_speed",
+                      "mean speed of the tactor on the pad while it moved; nan if it didn't"},
     DescribedQuantity{"", "tick", "tick of the trial, from 0"},
     DescribedQuantity{"", "p_WB", "place of the object in the world"},
     DescribedQuantity{"", "q_WB", "orientation of the object in the world, a unit quaternion"},
@@ -102,7 +114,8 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"sample", "gap", "distance to the nearest surface; negative: pressed in"},
     DescribedQuantity{"", "place_wanted_L", "place that its tactor was told, on the pad: x towards the tip, y across"},
     DescribedQuantity{"", "place_shown_L", "place that its tactor measured, likewise; nan where it doesn't measure"},
-    DescribedQuantity{"sample", "flags", "sum of 1 touching, 2 sliding, 4 forces cut by a safety limit, 8 tactor parked"},
+    DescribedQuantity{"sample", "flags",
+                      "sum of 1 touching, 2 sliding, 4 forces cut by a safety limit, 8 tactor parked"},
     DescribedQuantity{"hands", "base_offset_W", "offset of its arm's base from its place in the scene"},
     DescribedQuantity{"hands", "base_turn", "turn of its arm's base about the vertical; nan: nobody measured it"},
     DescribedQuantity{"hands", "peak_force", "largest force of its arm; 0: it doesn't tell"},
@@ -112,7 +125,8 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"hands", "tip_damping", "least viscous friction of its arm at the tip"},
     DescribedQuantity{"hands", "oldest_sample", "age up to which a sample was trusted; nan: as in the protocol"},
     DescribedQuantity{"hands", "passive", "the fingers were kept passive", kNoYes},
-    DescribedQuantity{"input", "cut", "why forces were cut from outside before the tick; 0: they weren't (devices/gate/force_gate.h)"},
+    DescribedQuantity{"input", "cut",
+                      "why forces were cut from outside before the tick; 0: they weren't (devices/gate/force_gate.h)"},
     DescribedQuantity{"input", "phase", "phase of the hand's intent (tasks/lab/participants/participant.h)"},
     DescribedQuantity{"input", "flags", "sum of 1 wants to lift, 2 answers, and 256 times the key that was pressed"},
     DescribedQuantity{"input", "input_flags", "which of its quantities its devices measured (tasks/run/records.h)"},
@@ -129,7 +143,8 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"survey", "condition", "condition that it was asked of; empty: the whole session"},
     DescribedQuantity{"survey", "question", "question as the person read it"},
     DescribedQuantity{"survey", "answer", "answer in words; empty: none was given"},
-    DescribedQuantity{"survey", "answer_value", "answer as a number: a scale's, or the place of a choice; nan if it has none"},
+    DescribedQuantity{"survey", "answer_value",
+                      "answer as a number: a scale's, or the place of a choice; nan if it has none"},
     DescribedQuantity{"session", "task", "experiment that it is of"},
     DescribedQuantity{"session", "seed", "seed of all that varies"},
     DescribedQuantity{"session", "version", "version of pincer that made it"},
@@ -137,7 +152,8 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"session", "scene_json", "scene, as JSON"},
     DescribedQuantity{"session", "protocol_json", "study, as JSON: every parameter"},
     DescribedQuantity{"session", "devices_json", "devices, as JSON"},
-    DescribedQuantity{"session", "participants_json", "parameters of simulated participants, or the number of the person, as JSON"},
+    DescribedQuantity{"session", "participants_json",
+                      "parameters of simulated participants, or the number of the person, as JSON"},
     DescribedQuantity{"session", "participants_hash", "fingerprint of that"},
     DescribedQuantity{"session", "commit_id", "commit of the sources"},
     DescribedQuantity{"session", "sources", "fingerprint of the sources that decide a trial's bits"},
@@ -170,8 +186,13 @@ std::vector<std::pair<std::string, std::string>> levelsOf(std::string_view text)
 }
 
 std::string unitFor(std::string_view unit) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kUnits = {
-      {{"m_per_s", "m/s"}, {"m_per_rad", "m/rad"}, {"Ns_per_m", "N s/m"}, {"Nm", "N m"}, {"us", "us"}, {"si", ""}, {"json", ""}}};
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kUnits = {{{"m_per_s", "m/s"},
+                                                                                    {"m_per_rad", "m/rad"},
+                                                                                    {"Ns_per_m", "N s/m"},
+                                                                                    {"Nm", "N m"},
+                                                                                    {"us", "us"},
+                                                                                    {"si", ""},
+                                                                                    {"json", ""}}};
   for (const auto& [name, shown] : kUnits)
     if (name == unit) return std::string(shown);
   return std::string(unit);
@@ -187,7 +208,8 @@ void describeTable(std::string_view table, std::vector<DescribedColumn>& all) {
 
 std::string levelText(const ColumnMeaning& meaning) {
   std::string text;
-  for (const auto& [value, means] : meaning.levels) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", value, means);
+  for (const auto& [value, means] : meaning.levels)
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", value, means);
   return text;
 }
 
@@ -200,12 +222,14 @@ ColumnMeaning meaningOf(std::string_view table, const ColumnName& column) {
   };
   auto quantity = found(table);
   if (quantity == kQuantities.end()) quantity = found("");
-  if (quantity == kQuantities.end()) throw std::logic_error(fmt::format("column {} of table {} isn't described", column.text(), table));
+  if (quantity == kQuantities.end())
+    throw std::logic_error(fmt::format("column {} of table {} isn't described", column.text(), table));
   return {describedWith(column, quantity->description), unitFor(column.unit), levelsOf(quantity->levels)};
 }
 
 int countsFrom(const ColumnName& column) {
-  constexpr std::array<std::string_view, 5> kCounted = {"trial", "participant", "run", "place_in_order", "place_in_run"};
+  constexpr std::array<std::string_view, 5> kCounted = {"trial", "participant", "run", "place_in_order",
+                                                        "place_in_run"};
   return std::find(kCounted.begin(), kCounted.end(), column.quantity) != kCounted.end() ? 1 : 0;
 }
 
@@ -229,7 +253,8 @@ std::string columnsCsv() {
   for (const char* head : {"table", "column", "unit", "description", "levels"}) table.add(std::string(head));
   table.endRow();
   for (const DescribedColumn& c : allColumns()) {
-    for (const std::string& text : {c.table, c.column, c.meaning.unit, c.meaning.description, levelText(c.meaning)}) table.add(text);
+    for (const std::string& text : {c.table, c.column, c.meaning.unit, c.meaning.description, levelText(c.meaning)})
+      table.add(text);
     table.endRow();
   }
   return table.take();
@@ -237,14 +262,17 @@ std::string columnsCsv() {
 
 std::string columnsMarkdown() {
   std::string text =
-      "# Tables of a session\n\nAs `pincer export` writes them; `columns.csv` beside them says the same.\n`nan` (in BIDS `n/a`): nothing "
+      "# Tables of a session\n\nAs `pincer export` writes them; `columns.csv` beside them says the same.\n`nan` (in "
+      "BIDS `n/a`): nothing "
       "was measured.\n"
-      "Trials, participants, runs and places in an order count from 1 in all exports; in `session.db` itself they\nbegin at 0.\n";
+      "Trials, participants, runs and places in an order count from 1 in all exports; in `session.db` itself "
+      "they\nbegin at 0.\n";
   std::string table;
   for (const DescribedColumn& c : allColumns()) {
     if (c.table != table) text += fmt::format("\n## {}\n| column | unit | meaning |\n|---|---|---|\n", table = c.table);
     const std::string levels = levelText(c.meaning);
-    text += fmt::format("| `{}` | {} | {}{}{} |\n", c.column, c.meaning.unit, c.meaning.description, levels.empty() ? "" : ". ", levels);
+    text += fmt::format("| `{}` | {} | {}{}{} |\n", c.column, c.meaning.unit, c.meaning.description,
+                        levels.empty() ? "" : ". ", levels);
   }
   return text;
 }

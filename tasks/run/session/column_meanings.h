@@ -1,7 +1,8 @@
-// column_meanings: what each column of a session's tables means, its unit and its levels, for people: in exported tables, in BIDS and in docs/reference,
-// from one place.
+// column_meanings: what each column of a session's tables means, its unit and its levels, for people: in exported
+// tables, in BIDS and in docs/reference, from one place.
 //
-// People count from 1: trials, participants, runs and places in an order do so wherever they are exported or shown. In session.db they begin at 0.
+// People count from 1: trials, participants, runs and places in an order do so wherever they are exported
+// or shown. In session.db they begin at 0.
 #pragma once
 #include <string>
 #include <string_view>

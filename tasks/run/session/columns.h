@@ -1,13 +1,15 @@
-// columns: the one list of what a stored record's columns are called and which number stands in each. The schema, the writer, the reader
-// and the CSV export all follow it.
+// columns: the one list of what a stored record's columns are called and which number stands in each. The schema, the
+// writer, the reader and the CSV export all follow it.
 //
 //   forEachColumn(record, visit)   calls visit(ColumnName, field) for each column in order
 //
-// A name is [finger_]quantity[_axis][_unit]: `f0_normal_N`, `f1_place_shown_L_x_m`, `duration_s`. Units are SI, as in records.h; frames and
-// symbols too. Fields are std::int64_t, std::int32_t, std::uint32_t, std::uint64_t, double, std::string or Bytes.
+// A name is [finger_]quantity[_axis][_unit]: `f0_normal_N`, `f1_place_shown_L_x_m`, `duration_s`. Units are
+// SI, as in records.h; frames and symbols too. Fields are std::int64_t, std::int32_t, std::uint32_t,
+// std::uint64_t, double, std::string or Bytes.
 //
-// A column has a range, and a reader refuses what lies outside (table.h): integers count something, so that they begin at 0; times, frictions
-// and levels are sorted, compared and divided by. A measured number may be anything, NaN and infinity too: a session keeps what happened.
+// A column has a range, and a reader refuses what lies outside (table.h): integers count something, so that they begin
+// at 0; times, frictions and levels are sorted, compared and divided by. A measured number may be anything, NaN and
+// infinity too: a session keeps what happened.
 #pragma once
 #include <array>
 #include <concepts>
@@ -44,7 +46,8 @@ constexpr ColumnRange kLength{1, kLargestCount};
 constexpr ColumnRange kPlace{-1e6, 1e6};    // [m]
 constexpr ColumnRange kCapability{0, 1e6};  // of an arm
 constexpr ColumnRange kCapabilityOrNone{0, 1e6, true};
-constexpr double kLastPhase = 9, kLastTrip = 8;  // of HandPhase and devices::Trip (experiments/hand_records.cpp compares them)
+// of HandPhase and devices::Trip (experiments/hand_records.cpp compares them)
+constexpr double kLastPhase = 9, kLastTrip = 8;
 }  // namespace columns
 
 struct ColumnName {
@@ -56,7 +59,8 @@ struct ColumnName {
   constexpr ColumnRange rangeOf() const {
     if (range) return *range;
     if constexpr (std::is_integral_v<Field>) {
-      return sizeof(Field) < 8 ? ColumnRange{0, static_cast<double>(std::numeric_limits<Field>::max())} : columns::kCount;
+      return sizeof(Field) < 8 ? ColumnRange{0, static_cast<double>(std::numeric_limits<Field>::max())}
+                               : columns::kCount;
     } else {
       return columns::kAny;
     }
@@ -80,8 +84,8 @@ constexpr std::array<std::string_view, 4> kAxes{"x", "y", "z", ""};
 constexpr std::array<std::string_view, 4> kQuaternion{"w", "x", "y", "z"};
 
 template <class Visit, class Array>
-constexpr void axes(Visit& visit, std::string_view finger, std::string_view quantity, std::string_view unit, Array& values,
-                    const ColumnRange& range = kAny) {
+constexpr void axes(Visit& visit, std::string_view finger, std::string_view quantity, std::string_view unit,
+                    Array& values, const ColumnRange& range = kAny) {
   for (std::size_t i = 0; i < values.size(); ++i) visit(ColumnName{finger, quantity, kAxes[i], unit, range}, values[i]);
 }
 

@@ -84,7 +84,8 @@ void writeInputs(const SessionReader& session, const std::string& path) {
 
 }  // namespace
 
-std::vector<std::string> exportCsv(const SessionReader& session, const std::string& directory, const SampleFilter& filter) {
+std::vector<std::string> exportCsv(const SessionReader& session, const std::string& directory,
+                                   const SampleFilter& filter) {
   makeDirectory(directory);
   std::vector<std::string> paths{directory + "/session.csv", directory + "/trial.csv",    directory + "/sample.csv",
                                  directory + "/event.csv",   directory + "/response.csv", directory + "/reading.csv"};

@@ -1,7 +1,8 @@
-// database: an SQLite file behind a wall. The only file that speaks to SQLite is database_sqlite.cpp; this header knows none of its types.
+// database: an SQLite file behind a wall. The only file that speaks to SQLite is
+// database_sqlite.cpp; this header knows none of its types.
 //
-// Every failure throws InputError that names the file, what was being done, SQLite's reason and what a person can do about it; where memory is
-// short, std::bad_alloc.
+// Every failure throws InputError that names the file, what was being done, SQLite's reason and what a person can do
+// about it; where memory is short, std::bad_alloc.
 // A Database and its Statements belong to one thread at a time.
 #pragma once
 #include <atomic>
@@ -32,7 +33,7 @@ class Statement {
   void bind(int parameter, std::string_view value);  // copied
   void bindBytes(int parameter, std::string_view value);
 
-  bool step();                      // true: a row is there; false: done, and ready to run again. Throws Interrupted (Database::heed)
+  bool step();  // true: a row is there; false: done, and ready to run again. Throws Interrupted (Database::heed)
   CellType type(int column) const;  // that is stored, before any conversion
   double real(int column) const;
   std::int64_t integer(int column) const;
@@ -49,8 +50,8 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-// While one lives, SQLite may use memory that was put aside at the start for this thread's statements, where there is no other: to mark a session
-// as aborted.
+// While one lives, SQLite may use memory that was put aside at the start for this thread's statements, where there
+// is no other: to mark a session as aborted.
 class LastWords {
  public:
   LastWords() noexcept;
@@ -59,8 +60,8 @@ class LastWords {
   LastWords& operator=(const LastWords&) = delete;
 };
 
-// The file may be anybody's: views and triggers in it don't run, names in quotes are columns or errors and never texts, pages are checked as
-// they are read, and no value is longer than kLongestValue.
+// The file may be anybody's: views and triggers in it don't run, names in quotes are columns or errors and never texts,
+// pages are checked as they are read, and no value is longer than kLongestValue.
 class Database {
  public:
   static constexpr int kLongestValue = 100'000'000;  // [bytes]; a protocol has 20,000, a second of inputs 200,000

@@ -26,20 +26,24 @@ struct Remedy {
 constexpr Remedy kRemedies[] = {
     {SQLITE_FULL, "The disk (or quota) is full. Free some space or choose another disk."},
     {SQLITE_IOERR, "The disk or network share reports an error. Check it, or choose a local disk."},
-    {SQLITE_READONLY, "The file or its directory can't be written. Check permissions, or work on a copy (the file with its -wal)."},
+    {SQLITE_READONLY,
+     "The file or its directory can't be written. Check permissions, or work on a copy (the file with its -wal)."},
     {SQLITE_CANTOPEN, "Check that the directory exists and that you may read and write it."},
     {SQLITE_BUSY, "Another program holds the file. Close it and try again."},
     {SQLITE_LOCKED, "Another program holds the file. Close it and try again."},
     {SQLITE_CORRUPT, "The file is damaged; `sqlite3 FILE .recover` may save rows."},
     {SQLITE_NOMEM, "There is too little memory. Close other programs and try again."},
     {SQLITE_TOOBIG, "A value in the file is longer than any that pincer writes: the file is damaged, or no session."},
-    {SQLITE_CONSTRAINT, "A trial of that number is there already, so something else wrote this session. Go on with a copy of before."},
-    {SQLITE_ERROR, "The file lacks a table or column, so it was changed by something else or is damaged. Take a copy of before."},
-    {SQLITE_NOTADB, "The file is no SQLite database, so no session. Give the path of a session that `pincer run` wrote."},
+    {SQLITE_CONSTRAINT,
+     "A trial of that number is there already, so something else wrote this session. Go on with a copy of before."},
+    {SQLITE_ERROR,
+     "The file lacks a table or column, so it was changed by something else or is damaged. Take a copy of before."},
+    {SQLITE_NOTADB,
+     "The file is no SQLite database, so no session. Give the path of a session that `pincer run` wrote."},
 };
 
-// SQLite's own allocator, and where that has nothing left, a reserve for the last words (LastWords). The reserve is given out from its beginning and
-// never taken back: marking a session as aborted takes some tens of kilobytes, once.
+// SQLite's own allocator, and where that has nothing left, a reserve for the last words (LastWords). The reserve is
+// given out from its beginning and never taken back: marking a session as aborted takes some tens of kilobytes, once.
 class Reserve {
  public:
   static void install() {
@@ -62,7 +66,8 @@ class Reserve {
     return block || !open_ ? block : fromReserve(size);
   }
   static void* fromReserve(int size) {
-    const std::size_t rounded = (static_cast<std::size_t>(size) + alignof(Header) - 1) / alignof(Header) * alignof(Header);
+    const std::size_t rounded =
+        (static_cast<std::size_t>(size) + alignof(Header) - 1) / alignof(Header) * alignof(Header);
     const std::size_t at = used_.fetch_add(sizeof(Header) + rounded);
     if (at + sizeof(Header) + rounded > bytes_.size()) return nullptr;
     auto* header = new (bytes_.data() + at) Header{size};
@@ -75,7 +80,9 @@ class Reserve {
   static void release(void* block) {
     if (!isOurs(block)) usual_.xFree(block);
   }
-  static int sizeOf(void* block) { return isOurs(block) ? (static_cast<const Header*>(block) - 1)->size : usual_.xSize(block); }
+  static int sizeOf(void* block) {
+    return isOurs(block) ? (static_cast<const Header*>(block) - 1)->size : usual_.xSize(block);
+  }
   static void* resize(void* block, int size) {
     if (!isOurs(block)) {
       void* grown = usual_.xRealloc(block, size);
@@ -112,8 +119,8 @@ void distrust(sqlite3* d) {
   sqlite3_exec(d, "PRAGMA cell_size_check = ON; PRAGMA mmap_size = 0", nullptr, nullptr, nullptr);
 }
 
-// A program that was killed between the two halves of a change leaves a journal, which undoes the first half. Only who may write can do so; of anything
-// else that is wrong the reader tells.
+// A program that was killed between the two halves of a change leaves a journal, which undoes the first half. Only who
+// may write can do so; of anything else that is wrong the reader tells.
 void undoTornWrite(sqlite3* reader, const std::string& path) {
   constexpr const char* kRead = "PRAGMA user_version";
   if (sqlite3_exec(reader, kRead, nullptr, nullptr, nullptr) != SQLITE_READONLY_ROLLBACK) return;
@@ -148,7 +155,8 @@ Database::Database(std::string path, Mode mode) : path_(std::move(path)) {
   static const bool once = (Reserve::install(), true);  // before SQLite's first word
   static_cast<void>(once);
   sqlite3* raw = nullptr;
-  const int code = sqlite3_open_v2(path_.c_str(), &raw, mode == Mode::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE, nullptr);
+  const int code =
+      sqlite3_open_v2(path_.c_str(), &raw, mode == Mode::kRead ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE, nullptr);
   database_.reset(raw);
   if (code != SQLITE_OK) fail(code, "opening the session");
   sqlite3_extended_result_codes(raw, 1);
@@ -184,8 +192,8 @@ void Database::close() {
 
 Statement::Statement(const Database& database, std::string_view sql) : database_(&database) {
   sqlite3_stmt* raw = nullptr;
-  const int code =
-      sqlite3_prepare_v3(database.handle(), sql.data(), static_cast<int>(sql.size()), SQLITE_PREPARE_PERSISTENT, &raw, nullptr);
+  const int code = sqlite3_prepare_v3(database.handle(), sql.data(), static_cast<int>(sql.size()),
+                                      SQLITE_PREPARE_PERSISTENT, &raw, nullptr);
   statement_.reset(raw);
   if (code != SQLITE_OK) database.fail(code, "reading the session");
 }
@@ -196,7 +204,9 @@ void Statement::must(int code) const {
 }
 
 void Statement::bind(int parameter, double value) { must(sqlite3_bind_double(statement_.get(), parameter + 1, value)); }
-void Statement::bind(int parameter, std::int64_t value) { must(sqlite3_bind_int64(statement_.get(), parameter + 1, value)); }
+void Statement::bind(int parameter, std::int64_t value) {
+  must(sqlite3_bind_int64(statement_.get(), parameter + 1, value));
+}
 void Statement::bind(int parameter, std::string_view value) {
   must(sqlite3_bind_text64(statement_.get(), parameter + 1, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
 }
@@ -210,7 +220,8 @@ bool Statement::step() {
   const int code = sqlite3_step(statement_.get());
   if (code == SQLITE_ROW) return true;
   sqlite3_reset(statement_.get());
-  if (code != SQLITE_DONE) database_->fail(code, sqlite3_stmt_readonly(statement_.get()) ? "reading the session" : "writing the session");
+  if (code != SQLITE_DONE)
+    database_->fail(code, sqlite3_stmt_readonly(statement_.get()) ? "reading the session" : "writing the session");
   return false;
 }
 

@@ -62,7 +62,8 @@ InputRecord recordOf(const InputWords& words) {
 
 [[noreturn]] void refuse(const InputChunk& chunk) {
   throw InputError(
-      fmt::format("the inputs of trial {}, ticks {} to {}, are damaged: their bytes aren't those that were recorded. Take a copy of the "
+      fmt::format("the inputs of trial {}, ticks {} to {}, are damaged: their bytes aren't those that were recorded. "
+                  "Take a copy of the "
                   "session from before.",
                   chunk.trial + 1, chunk.first_tick, chunk.first_tick + chunk.ticks - 1));
 }

@@ -1,10 +1,11 @@
-// ring: how samples and inputs leave the 1 kHz tick. A single-producer single-consumer queue of fixed size, without lock, allocation or system call.
+// ring: how samples and inputs leave the 1 kHz tick. A single-producer single-consumer queue of fixed size,
+// without lock, allocation or system call.
 //
 //   slot(k) = k mod capacity;   head = number of records pushed, tail = number taken;   0 <= head - tail <= capacity
 //
-// One thread may push, one other may drain. A push into a full ring is refused and counted: the tick never waits for the disk.
-// Source: L. Lamport, "Proving the correctness of multiprocess programs", IEEE Trans. Softw. Eng. SE-3 (1977) 125-143, section III; the
-// release/acquire pairs on head and tail are those of the C++ memory model.
+// One thread may push, one other may drain. A push into a full ring is refused and counted: the tick never waits for
+// the disk. Source: L. Lamport, "Proving the correctness of multiprocess programs", IEEE Trans. Softw. Eng. SE-3 (1977)
+// 125-143, section III; the release/acquire pairs on head and tail are those of the C++ memory model.
 #pragma once
 #include <atomic>
 #include <bit>
@@ -36,8 +37,8 @@ class Ring {
     return true;
   }
 
-  // Consumer. Calls take(record) on all that had been pushed when the call began, oldest first; returns how many. A record's slot is free
-  // again once `take` has returned from it.
+  // Consumer. Calls take(record) on all that had been pushed when the call began, oldest first; returns how many. A
+  // record's slot is free again once `take` has returned from it.
   template <class Take>
   std::size_t drain(Take&& take) {
     const std::uint64_t end = head_.load(std::memory_order_acquire);
@@ -50,8 +51,11 @@ class Ring {
     return static_cast<std::size_t>(end - begin);
   }
 
-  // Producer: whether the next push would be refused. Space never shrinks under the producer, so a `false` stays true until it pushes.
-  bool full() const noexcept { return head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire) == slots_.size(); }
+  // Producer: whether the next push would be refused. Space never shrinks under the producer,
+  // so a `false` stays true until it pushes.
+  bool full() const noexcept {
+    return head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire) == slots_.size();
+  }
 
   std::size_t capacity() const noexcept { return slots_.size(); }
   std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
@@ -59,7 +63,8 @@ class Ring {
  private:
   static std::size_t checked(std::size_t capacity) {
     if (capacity >= 2 && std::has_single_bit(capacity)) return capacity;
-    throw InputError("ring: capacity " + std::to_string(capacity) + " is not a power of two >= 2. Use for example 4096.");
+    throw InputError("ring: capacity " + std::to_string(capacity) +
+                     " is not a power of two >= 2. Use for example 4096.");
   }
 
   std::vector<Record> slots_;

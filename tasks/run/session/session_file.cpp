@@ -27,8 +27,10 @@ void makeIndexes(Database& d) {
 template <class Record>
 void addColumnsSince(Database& d, std::int64_t format) {
   for (const auto& [name, type] : columnsSince<Record>(format)) {
-    const std::string there = fmt::format("SELECT count(*) FROM pragma_table_info('{}') WHERE name = '{}'", tableName<Record>(), name);
-    if (d.integer(there) == 0) d.run(fmt::format("ALTER TABLE {} ADD COLUMN \"{}\" {}", tableName<Record>(), name, type));
+    const std::string there =
+        fmt::format("SELECT count(*) FROM pragma_table_info('{}') WHERE name = '{}'", tableName<Record>(), name);
+    if (d.integer(there) == 0)
+      d.run(fmt::format("ALTER TABLE {} ADD COLUMN \"{}\" {}", tableName<Record>(), name, type));
   }
 }
 
@@ -46,7 +48,8 @@ void makeTables(Database& d, const SessionInfo& info) {
   makeIndexes(d);
   Statement insert(d, insertSql<SessionInfo>());
   insertRow(insert, info);
-  d.run(fmt::format("UPDATE session SET started_utc = '{}', state = '{}', samples_dropped = 0", nowUtc(), kStateRunning));
+  d.run(
+      fmt::format("UPDATE session SET started_utc = '{}', state = '{}', samples_dropped = 0", nowUtc(), kStateRunning));
 }
 
 }  // namespace
@@ -54,7 +57,8 @@ void makeTables(Database& d, const SessionInfo& info) {
 void openForWriting(Database& d, std::int64_t max_pages) {
   if (max_pages > 0) d.text(fmt::format("PRAGMA max_page_count = {}", max_pages));
   if (d.text("PRAGMA journal_mode = WAL") == "wal") return;
-  throw InputError(d.path() + ": this file system has no shared memory for SQLite's log. Keep sessions on a local disk.");
+  throw InputError(d.path() +
+                   ": this file system has no shared memory for SQLite's log. Keep sessions on a local disk.");
 }
 
 void makeSession(const std::string& path, const SessionInfo& info, std::int64_t max_pages) {
@@ -72,7 +76,9 @@ void makeSession(const std::string& path, const SessionInfo& info, std::int64_t 
 void upgradeTables(Database& d) {
   const std::int64_t format = d.integer("PRAGMA user_version");
   addColumnsSince<SessionInfo>(d, format);
-  d.run("UPDATE session SET commit_id = '', sources = '', flags = '', c_library = '', processor = '' WHERE commit_id IS NULL");
+  d.run(
+      "UPDATE session SET commit_id = '', sources = '', flags = '', c_library = '', processor = '' WHERE commit_id IS "
+      "NULL");
   if (format >= 3) addColumnsSince<HandsRecord>(d, format);
   makeTable<HandsRecord>(d);
   makeTable<InputChunk>(d);
@@ -83,15 +89,19 @@ void upgradeTables(Database& d) {
 
 void removeUnfinished(Database& d) {
   for (const char* table : {"sample", "event", "reading", "hands", "input"}) {
-    d.run(fmt::format("DELETE FROM {} WHERE trial NOT IN (SELECT trial FROM trial UNION SELECT trial FROM response)", table));
+    d.run(fmt::format("DELETE FROM {} WHERE trial NOT IN (SELECT trial FROM trial UNION SELECT trial FROM response)",
+                      table));
   }
 }
 
 void tellWhoGoesOn(Database& d, SessionInfo info) {
   addBuild(info);
-  Statement update(d, "UPDATE session SET version = ?, build = ?, commit_id = ?, sources = ?, flags = ?, c_library = ?, processor = ?");
+  Statement update(
+      d,
+      "UPDATE session SET version = ?, build = ?, commit_id = ?, sources = ?, flags = ?, c_library = ?, processor = ?");
   int parameter = 0;
-  for (const std::string* text : {&info.version, &info.build, &info.commit, &info.sources, &info.flags, &info.c_library, &info.processor}) {
+  for (const std::string* text :
+       {&info.version, &info.build, &info.commit, &info.sources, &info.flags, &info.c_library, &info.processor}) {
     update.bind(parameter++, std::string_view(*text));
   }
   update.step();

@@ -7,8 +7,9 @@
 
 namespace pincer::tasks {
 
-// Makes the session at `path` under another name, with its tables and its first row, then puts it in place: a kill leaves no beginnings of a
-// session behind. `max_pages` of the file; 0: no limit. Throws InputError; also where something stands at `path`.
+// Makes the session at `path` under another name, with its tables and its first row, then puts it in
+// place: a kill leaves no beginnings of a session behind. `max_pages` of the file; 0: no limit. Throws
+// InputError; also where something stands at `path`.
 void makeSession(const std::string& path, const SessionInfo& info, std::int64_t max_pages);
 
 // Switches to SQLite's write-ahead log.

@@ -45,7 +45,8 @@ std::string thisProcess() {
 bool isStill(const std::string& path, const FileDescriptor& file) {
   struct stat open {
   }, named{};
-  return ::fstat(file.get(), &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino && open.st_dev == named.st_dev;
+  return ::fstat(file.get(), &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
+         open.st_dev == named.st_dev;
 }
 
 FileDescriptor lockFile(const std::string& session, const std::string& path) {
@@ -54,16 +55,16 @@ FileDescriptor lockFile(const std::string& session, const std::string& path) {
     if (!file) failOnFile(session, "create the session's lock", errno);
     const LockAttempt attempt = tryLock(file);
     if (attempt == LockAttempt::kHeldByAnother) {
-      throw InputError(
-          fmt::format("{}: the session is being written by {}. One program writes a session at a time: wait until that one has "
-                      "ended, or end it; then go on with --resume.",
-                      session, holderOf(file)));
+      throw InputError(fmt::format(
+          "{}: the session is being written by {}. One program writes a session at a time: wait until that one has "
+          "ended, or end it; then go on with --resume.",
+          session, holderOf(file)));
     }
     if (attempt == LockAttempt::kFailed) {
-      throw InputError(
-          fmt::format("{}: the file system has no locks ({}), so that two programs could write the session at once. Keep "
-                      "sessions on a local disk.",
-                      session, std::generic_category().message(errno)));
+      throw InputError(fmt::format(
+          "{}: the file system has no locks ({}), so that two programs could write the session at once. Keep "
+          "sessions on a local disk.",
+          session, std::generic_category().message(errno)));
     }
     if (isStill(path, file)) return file;
   }

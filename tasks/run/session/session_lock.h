@@ -1,8 +1,9 @@
 // session_lock: one program writes a session at a time.
 //
-// A writer holds a lock (file_descriptor.h) on `<session>-lock`, a file beside the session that says who holds it, and removes it when it is
-// done. The file of a killed writer stays, without a lock, until the next writer comes. The lock isn't on the session itself: SQLite keeps
-// POSIX locks there, which the process loses with any descriptor of that file that it closes. Readers need no lock.
+// A writer holds a lock (file_descriptor.h) on `<session>-lock`, a file beside the session that says who holds it, and
+// removes it when it is done. The file of a killed writer stays, without a lock, until the next writer comes. The lock
+// isn't on the session itself: SQLite keeps POSIX locks there, which the process loses with any descriptor of that
+// file that it closes. Readers need no lock.
 #pragma once
 #include <string>
 

@@ -12,11 +12,12 @@ namespace pincer::tasks {
 
 namespace {
 
-// A part of it beside its place; before format 5 sessions were made at their place, and a kill could leave the beginnings of one there.
+// A part of it beside its place; before format 5 sessions were made at their place, and a kill
+// could leave the beginnings of one there.
 [[noreturn]] void refuseBeginnings(const std::string& path) {
-  throw InputError(
-      path +
-      ": the session was killed while it was being made and holds no trial. Delete it, if it is there, and run again without --resume.");
+  throw InputError(path +
+                   ": the session was killed while it was being made and holds no trial. Delete it, if it is there, "
+                   "and run again without --resume.");
 }
 
 void requireFile(const std::string& path) {
@@ -25,7 +26,8 @@ void requireFile(const std::string& path) {
     if (hasPart(path)) refuseBeginnings(path);
     throw InputError(path + ": there is no such file. Give the path of a session.");
   }
-  if (!std::filesystem::is_regular_file(path, ignored)) throw InputError(path + ": is not a file. Give the path of a session.");
+  if (!std::filesystem::is_regular_file(path, ignored))
+    throw InputError(path + ": is not a file. Give the path of a session.");
   if (std::filesystem::file_size(path, ignored) == 0) refuseBeginnings(path);
 }
 
@@ -38,11 +40,13 @@ std::unique_ptr<Database> openSession(const std::string& path) {
   if (empty && format == 0 && (application == 0 || application == kApplicationId)) refuseBeginnings(path);
   if (application != kApplicationId) {
     throw InputError(path +
-                     ": is not a pincer session (its application id isn't \"PNCR\"). Give the path of a file that `pincer run` wrote.");
+                     ": is not a pincer session (its application id isn't \"PNCR\"). Give the path of a file that "
+                     "`pincer run` wrote.");
   }
   if (format < kOldestFormat || format > kFormat) {
-    throw InputError(fmt::format("{}: has session format {}, this pincer reads formats {} to {}. Use the pincer that wrote it.", path,
-                                 format, kOldestFormat, kFormat));
+    throw InputError(
+        fmt::format("{}: has session format {}, this pincer reads formats {} to {}. Use the pincer that wrote it.",
+                    path, format, kOldestFormat, kFormat));
   }
   return database;
 }
@@ -59,13 +63,15 @@ template <class Record>
 Record readOnly(const Database& database, std::int64_t format) {
   std::vector<Record> rows = readAll<Record>(database, format);
   if (rows.size() == 1) return std::move(rows.front());
-  throw InputError(
-      fmt::format("{}: table {} has {} rows in place of one. The file is damaged, or something else than pincer changed it. "
-                  "Take a copy of before.",
-                  database.path(), tableName<Record>(), rows.size()));
+  throw InputError(fmt::format(
+      "{}: table {} has {} rows in place of one. The file is damaged, or something else than pincer changed it. "
+      "Take a copy of before.",
+      database.path(), tableName<Record>(), rows.size()));
 }
 
-std::string whereTrial(std::optional<std::int64_t> trial) { return trial ? fmt::format("WHERE trial = {}", *trial) : ""; }
+std::string whereTrial(std::optional<std::int64_t> trial) {
+  return trial ? fmt::format("WHERE trial = {}", *trial) : "";
+}
 
 // Of each number the first: formats before 5 let two programs write a session at once.
 template <class Record>
@@ -80,8 +86,9 @@ void requirePossible(const InputRecord& record) {
   forEachColumn(record, [&]<class Field>(const ColumnName& name, const Field& field) {
     const ColumnRange range = name.rangeOf<Field>();
     if (range.holds(static_cast<double>(field))) return;
-    throw InputError(fmt::format("the inputs of trial {}, tick {}, are damaged: {} = {} isn't {}. Take a copy of the session from before.",
-                                 record.trial + 1, record.tick, name.text(), field, wordsOf(range, "number")));
+    throw InputError(fmt::format(
+        "the inputs of trial {}, tick {}, are damaged: {} = {} isn't {}. Take a copy of the session from before.",
+        record.trial + 1, record.tick, name.text(), field, wordsOf(range, "number")));
   });
 }
 
@@ -99,16 +106,19 @@ std::string doubledText(const Database& database) {
   std::string numbers;
   std::int64_t count = 0;
   for (const char* table : {"trial", "response"}) {
-    Statement rows(database, fmt::format("SELECT trial FROM {} GROUP BY trial HAVING count(*) > 1 ORDER BY trial", table));
+    Statement rows(database,
+                   fmt::format("SELECT trial FROM {} GROUP BY trial HAVING count(*) > 1 ORDER BY trial", table));
     for (; rows.step(); ++count) {
       if (count < 10) numbers += fmt::format("{}{}", count > 0 ? ", " : "", rows.integer(0) + 1);
     }
   }
   if (count == 0) return "";
   return fmt::format(
-      "Two programs wrote this session at once: trial{} {}{} {} there more than once. Only the first of each counts here; what {} samples, "
+      "Two programs wrote this session at once: trial{} {}{} {} there more than once. Only the first of each counts "
+      "here; what {} samples, "
       "events and readings hold is mixed.",
-      count == 1 ? "" : "s", numbers, count > 10 ? ", ..." : "", count == 1 ? "is" : "are", count == 1 ? "its" : "their");
+      count == 1 ? "" : "s", numbers, count > 10 ? ", ..." : "", count == 1 ? "is" : "are",
+      count == 1 ? "its" : "their");
 }
 
 }  // namespace
@@ -129,8 +139,8 @@ bool SessionReader::complete() const { return progress_.state == kStateComplete;
 std::string SessionReader::doubledTrials() const { return doubledText(*database_); }
 
 std::string SessionReader::warning() const {
-  const std::int64_t trials =
-      database_->integer("SELECT (SELECT count(DISTINCT trial) FROM trial) + (SELECT count(DISTINCT trial) FROM response)");
+  const std::int64_t trials = database_->integer(
+      "SELECT (SELECT count(DISTINCT trial) FROM trial) + (SELECT count(DISTINCT trial) FROM response)");
   std::vector<std::string> sentences;
   const auto unfinished = [&](const std::string& why) {
     sentences.push_back(fmt::format("This session was not completed{} It holds {} finished trials.", why, trials));
@@ -142,13 +152,18 @@ std::string SessionReader::warning() const {
   } else if (!complete()) {
     unfinished(fmt::format(" ({}).", state()));
   }
-  if (samplesDropped() > 0) sentences.push_back(fmt::format("{} samples were lost because the disk was too slow.", samplesDropped()));
+  if (samplesDropped() > 0)
+    sentences.push_back(fmt::format("{} samples were lost because the disk was too slow.", samplesDropped()));
   if (std::string doubled = doubledTrials(); !doubled.empty()) sentences.push_back(std::move(doubled));
   return fmt::format("{}", fmt::join(sentences, " "));
 }
 
-std::vector<TrialRecord> SessionReader::trials() const { return firstOfEach(readAll<TrialRecord>(*database_, format_)); }
-std::vector<ResponseRecord> SessionReader::responses() const { return firstOfEach(readAll<ResponseRecord>(*database_, format_)); }
+std::vector<TrialRecord> SessionReader::trials() const {
+  return firstOfEach(readAll<TrialRecord>(*database_, format_));
+}
+std::vector<ResponseRecord> SessionReader::responses() const {
+  return firstOfEach(readAll<ResponseRecord>(*database_, format_));
+}
 std::vector<EventRecord> SessionReader::events(std::optional<std::int64_t> trial) const {
   return readAll<EventRecord>(*database_, format_, whereTrial(trial));
 }
@@ -179,9 +194,12 @@ void SessionReader::forEachInput(std::int64_t trial, const std::function<void(co
   }
 }
 
-void SessionReader::forEachSample(const SampleFilter& filter, const std::function<void(const SampleRecord&)>& take) const {
-  if (filter.stride < 1) throw InputError(fmt::format("sample stride {} is out of range [1, inf). Use 1 for every sample.", filter.stride));
-  Statement rows(*database_, fmt::format("{} {} ORDER BY rowid", selectSql<SampleRecord>(format_), whereTrial(filter.trial)));
+void SessionReader::forEachSample(const SampleFilter& filter,
+                                  const std::function<void(const SampleRecord&)>& take) const {
+  if (filter.stride < 1)
+    throw InputError(fmt::format("sample stride {} is out of range [1, inf). Use 1 for every sample.", filter.stride));
+  Statement rows(*database_,
+                 fmt::format("{} {} ORDER BY rowid", selectSql<SampleRecord>(format_), whereTrial(filter.trial)));
   for (std::int64_t k = 0; rows.step(); ++k) {
     if (k % filter.stride == 0) take(readRow<SampleRecord>(rows));
   }

@@ -28,18 +28,23 @@ namespace pincer::tasks {
 
 namespace {
 
-constexpr auto kBatchPeriod = std::chrono::milliseconds(20);  // leaves 30 of the promised 50 ms for the transaction itself
-constexpr int kCheckpointPages = 16384;  // 64 MB of log: a trial never gets there, so the log is folded in between trials
+// leaves 30 of the promised 50 ms for the transaction itself
+constexpr auto kBatchPeriod = std::chrono::milliseconds(20);
+// 64 MB of log: a trial never gets there, so the log is folded in between trials
+constexpr int kCheckpointPages = 16384;
 
 // All that a session may consist of.
-std::array<std::string, 4> filesOfSession(const std::string& path) { return {path, path + "-wal", path + "-shm", path + "-journal"}; }
+std::array<std::string, 4> filesOfSession(const std::string& path) {
+  return {path, path + "-wal", path + "-shm", path + "-journal"};
+}
 
 // The file's entry on the session. Throws InputError, which says what is wrong with one that can't be gone on with.
 SessionInfo infoOfUnfinished(const std::string& path) {
   const SessionReader session(path);
   if (session.complete()) throw InputError(path + ": the session is complete; there is nothing to go on with.");
   const std::string doubled = session.doubledTrials();
-  if (!doubled.empty()) throw InputError(path + ": can't be gone on with. " + doubled + " `pincer report` and `pincer export` read it.");
+  if (!doubled.empty())
+    throw InputError(path + ": can't be gone on with. " + doubled + " `pincer report` and `pincer export` read it.");
   return session.info();
 }
 
@@ -50,7 +55,8 @@ class SessionWriter::Impl {
   using FinishedTrial = std::variant<TrialRecord, ResponseRecord, SurveyRecord>;
 
   // Of a session whose file is there; `earlier`: what the file says of it, if another program may have begun it.
-  Impl(SessionLock lock, const std::string& path, const SessionOptions& options, const std::optional<SessionInfo>& earlier = {})
+  Impl(SessionLock lock, const std::string& path, const SessionOptions& options,
+       const std::optional<SessionInfo>& earlier = {})
       : options_(options),
         ring_(options.ring_capacity),
         inputs_(options.ring_capacity),
@@ -231,8 +237,8 @@ class SessionWriter::Impl {
     }
   }
 
-  // Marks the file; if even that fails, it stays "running", which a reader reports as well. Needs no memory. `failure`: what the next call throws;
-  // null: InputError that says why.
+  // Marks the file; if even that fails, it stays "running", which a reader reports as well. Needs no memory. `failure`:
+  // what the next call throws; null: InputError that says why.
   void giveUp(std::string_view why, std::exception_ptr failure) noexcept {
     const LastWords words;
     const char* said = "The session is marked as aborted; trials finished before are kept.";
@@ -302,7 +308,8 @@ class SessionWriter::Impl {
 SessionWriter SessionWriter::create(const std::string& path, const SessionInfo& info, const SessionOptions& options) {
   const std::array<std::string, 4> files = filesOfSession(path);
   std::error_code ignored;
-  if (std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) failOnFile(path, "create the session", EEXIST);
+  if (std::filesystem::exists(std::filesystem::symlink_status(path, ignored)))
+    failOnFile(path, "create the session", EEXIST);
   SessionLock lock(path);
   makeSession(path, info, options.max_pages);
   try {

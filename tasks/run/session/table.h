@@ -49,7 +49,8 @@ template <class Field>
 constexpr std::string_view sqlType() {
   if constexpr (std::is_floating_point_v<Field>) return "REAL";
   if constexpr (std::is_same_v<Field, Bytes>) return "BLOB";
-  if constexpr (std::is_same_v<Field, std::string> || std::is_same_v<Field, std::uint64_t>) return "TEXT";  // SQLite's integers are signed
+  // SQLite's integers are signed
+  if constexpr (std::is_same_v<Field, std::string> || std::is_same_v<Field, std::uint64_t>) return "TEXT";
   return "INTEGER";
 }
 
@@ -89,7 +90,8 @@ std::string insertSql() {
   return fmt::format("INSERT INTO {} ({}) VALUES ({})", tableName<Record>(), columnList<Record>(), marks);
 }
 
-// The row's number, then the columns. Those that a file of format `format` lacks: nothing was measured, nothing was said.
+// The row's number, then the columns. Those that a file of format `format`
+// lacks: nothing was measured, nothing was said.
 template <class Record>
 std::string selectSql(std::int64_t format) {
   std::string list = "rowid";

@@ -27,16 +27,19 @@ void locatePlanarFinger(const PlanarTickModel& model, PlanarTickState& state, co
   state.seen = true;
 }
 
-devices::TactileCommand tactorPlace(const PlanarTickModel& model, const PlanarStimulus& stimulus, PlanarTickState& state, const Vec2& p_BC,
-                                    double felt_angle) {
+devices::TactileCommand tactorPlace(const PlanarTickModel& model, const PlanarStimulus& stimulus,
+                                    PlanarTickState& state, const Vec2& p_BC, double felt_angle) {
   if (!stimulus.tactile) return {true, Vec2::Zero()};
   const bool same = stimulus.tactile == stimulus.force;
-  const double angle = same ? felt_angle : stimulus.tactile->queryCircle(p_BC, model.finger_radius, state.tactile_tracker).finger_angle;
-  return {false, {std::clamp(model.finger_radius * (angle - state.pitch), -stimulus.largest_place, stimulus.largest_place), 0}};
+  const double angle =
+      same ? felt_angle : stimulus.tactile->queryCircle(p_BC, model.finger_radius, state.tactile_tracker).finger_angle;
+  return {
+      false,
+      {std::clamp(model.finger_radius * (angle - state.pitch), -stimulus.largest_place, stimulus.largest_place), 0}};
 }
 
-Vec3 gatedPlanarForce(const PlanarTickModel& model, PlanarTickState& state, const devices::ArmSample& sample, const PlanarTickOutput& out,
-                      double now, double dt) {
+Vec3 gatedPlanarForce(const PlanarTickModel& model, PlanarTickState& state, const devices::ArmSample& sample,
+                      const PlanarTickOutput& out, double now, double dt) {
   devices::GateInput in;
   in.f_D = model.X_WD.q.conjugate() * out.f_W;
   in.sample = sample;
@@ -47,7 +50,8 @@ Vec3 gatedPlanarForce(const PlanarTickModel& model, PlanarTickState& state, cons
   return devices::gateForce(model.gate, in, state.gate);
 }
 
-// As the tick of tasks/run/tick/tick.cpp does it: before the gate the wanted force, the wall's spring being what is stored.
+// As the tick of tasks/run/tick/tick.cpp does it: before the gate the wanted
+// force, the wall's spring being what is stored.
 void keepPlanarPassive(const PlanarTickModel& model, PlanarTickState& state, double depth, double dt, Vec3& f_W) {
   if (state.passivity.ports.empty()) return;
   const double stored = 0.5 * model.stiffness * depth * depth;

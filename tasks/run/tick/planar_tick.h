@@ -1,13 +1,18 @@
-// planar_tick: the tick of the experiments in the plane: one round fingertip on a curve. A pure function, as tasks/run/tick/tick.h.
+// planar_tick: the tick of the experiments in the plane: one round fingertip on a curve. A
+// pure function, as tasks/run/tick/tick.h.
 //
-//   arm's sample -> p_BC -> contact with the force curve -> f_W = k max(0, -phi) n -> passivity, last gate -> force for the arm
+//   arm's sample -> p_BC -> contact with the force curve -> f_W = k max(0, -phi) n ->
+//   passivity, last gate -> force for the arm
 //                        -> contact with the tactile curve -> place s = r (a - pitch), |s| <= largest place -> tactor
 //
-//   B    the plane x = 0 of W along the finger, (y, z), its origin the curve's;  C  the fingertip's centre;  r  its radius [m];  k  stiffness [N/m]
-//   phi  gap [m];  n  outward normal;  a  angle of the contact on the fingertip [rad];  s  place on the pad [m of arc, distal positive]
-// Force and place may follow two different curves (contact/curve/curve.h): shading is a property of what is shown, per sense. The surface
-// has no friction. The place is shown before contact too: on an open curve the nearest point is where contact will begin.
-// Source of the set-up: A. J. Doxon, D. E. Johnson, H. Z. Tan, W. R. Provancher, Presence 20(6), 2011.
+//   B    the plane x = 0 of W along the finger, (y, z), its origin the curve's;  C  the fingertip's
+//        centre;  r  its radius [m];  k  stiffness [N/m]
+//   phi  gap [m];  n  outward normal;  a  angle of the contact on the fingertip [rad];  s
+//                                         place on the pad [m of arc, distal positive]
+// Force and place may follow two different curves (contact/curve/curve.h): shading is a property of what is
+// shown, per sense. The surface has no friction. The place is shown before contact too: on an open curve
+// the nearest point is where contact will begin. Source of the set-up: A. J. Doxon, D. E. Johnson, H. Z.
+// Tan, W. R. Provancher, Presence 20(6), 2011.
 #pragma once
 #include <memory>
 

@@ -35,7 +35,8 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
     FingerSnapshot& seen = snapshot.fingers[i];
     seen.p_WP = state.world.points[i].p_W;
     seen.p_WF = state.world.points[i].p_target_W;
-    if (model.fingers[i].shape) seen.q_WF = quatFromRotationVector(state.world.points[i].turn_W) * state.fingers[i].q_WF;
+    if (model.fingers[i].shape)
+      seen.q_WF = quatFromRotationVector(state.world.points[i].turn_W) * state.fingers[i].q_WF;
     seen.f_user_W = finger.f_user_W;
     seen.normal_force = finger.normal_force;
     seen.patch_radius = finger.patch_radius;
@@ -47,7 +48,8 @@ void captureGrasp(const grasp::GraspModel& model, const grasp::GraspState& state
   const engine::WorldScratch& world = grasp::worldOf(scratch);
   for (std::size_t d = 0; d < snapshot.drive_forces.size(); ++d)
     snapshot.drive_forces[d] = engine::driveAt(world, static_cast<int>(d)).force;
-  for (int k = 0; k < engine::contactCount(world) && snapshot.contact_count < static_cast<int>(snapshot.contacts.size()); ++k) {
+  for (int k = 0;
+       k < engine::contactCount(world) && snapshot.contact_count < static_cast<int>(snapshot.contacts.size()); ++k) {
     const engine::ContactReport contact = engine::contactAt(world, k);
     if (contact.pushes) snapshot.contacts[static_cast<std::size_t>(snapshot.contact_count++)] = seenContact(contact);
   }

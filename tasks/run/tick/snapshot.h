@@ -1,5 +1,6 @@
-// snapshot: what a tick left behind, for somebody who watches: the viewer. The servo publishes it through a buffer of three places
-// (devices/triple_buffer.h), so that neither thread ever waits for the other. All memory is taken before the first tick.
+// snapshot: what a tick left behind, for somebody who watches: the viewer. The servo publishes it through
+// a buffer of three places (devices/triple_buffer.h), so that neither thread ever waits for the other.
+// All memory is taken before the first tick.
 #pragma once
 #include <cstdint>
 #include <optional>

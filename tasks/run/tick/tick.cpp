@@ -11,8 +11,8 @@ namespace pincer::tasks {
 namespace {
 
 // Low-pass of the measured or differenced velocity; first order, so that it never overshoots.
-Vec3 filteredVelocity(const TickModel& model, const MountState& mount, const devices::ArmSample& sample, const Vec3& p_WF,
-                      const Mat3& R_WD) {
+Vec3 filteredVelocity(const TickModel& model, const MountState& mount, const devices::ArmSample& sample,
+                      const Vec3& p_WF, const Mat3& R_WD) {
   const double dt = sample.time - mount.sample_time;
   if (!mount.seen || !(dt > 0)) return mount.v_WF;
   const Vec3 raw_W = sample.v_DF ? Vec3(R_WD * *sample.v_DF) : Vec3((p_WF - mount.p_WF) / dt);
@@ -45,7 +45,8 @@ void locateFinger(const TickModel& model, TickState& state, int i, const devices
     mount.v_WF.setZero();
     if (!mount.seen) mount.p_WF = state.grasp.world.points[i].p_W;
   }
-  const double lead = model.pose_hold == PoseHold::kFirst ? std::clamp(now - mount.sample_time, 0.0, model.most_lead) : 0;
+  const double lead =
+      model.pose_hold == PoseHold::kFirst ? std::clamp(now - mount.sample_time, 0.0, model.most_lead) : 0;
   input = {mount.p_WF + lead * mount.v_WF, mount.v_WF, X_WD.q * mount.q_DF, Vec3::Zero()};
 }
 
@@ -74,12 +75,13 @@ void keepPassive(const TickModel& model, TickState& state, TickScratch& scratch)
 // After it: what the motors will hold is what counts.
 void watchPorts(const TickModel& model, TickState& state, TickScratch& scratch) {
   if (state.passivity.ports.size() != model.mounts.size()) return;
-  for (std::size_t i = 0; i < model.mounts.size(); ++i) scratch.f_user_W[i] = model.mounts[i].X_WD.q * scratch.outputs[i].f_D;
+  for (std::size_t i = 0; i < model.mounts.size(); ++i)
+    scratch.f_user_W[i] = model.mounts[i].X_WD.q * scratch.outputs[i].f_D;
   grasp::holdPorts(scratch.f_user_W, state.passivity);
 }
 
-devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, const FingerMount& config, const grasp::FingerModel& shape,
-                                     const grasp::FingerReport& finger) {
+devices::TactileCommand tactorTarget(const TickModel& model, MountState& mount, const FingerMount& config,
+                                     const grasp::FingerModel& shape, const grasp::FingerReport& finger) {
   devices::PadInput in;
   in.parked = !config.display_tactile;
   if (finger.touching) {
@@ -100,8 +102,8 @@ TickScratch::TickScratch(const TickModel& model)
       outputs(model.mounts.size()),
       fingers(grasp::fingersOf(*grasp)) {}
 
-engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
-                        double now) {
+engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch,
+                        const std::vector<FingerInputs>& inputs, double now) {
   PINCER_DEMAND(model.mounts.size() == model.grasp.fingers.size(), "tick: one mount per finger");
   PINCER_DEMAND(inputs.size() == model.mounts.size(), "tick: one pair of samples per finger");
   PINCER_DEMAND(state.mounts.size() == model.mounts.size() && scratch.outputs.size() == model.mounts.size(),

@@ -1,9 +1,10 @@
-// tick: where devices and physics meet. A pure function: the same model, state and samples give the same bits, in a live session, in a batch
-// and in a replay.
+// tick: where devices and physics meet. A pure function: the same model, state and samples give the same bits, in a
+// live session, in a batch and in a replay.
 //
 //   device samples -> finger poses -> grasp step -> passivity -> last gate -> forces for the arms, places for the CLDs
 //
-// Passivity works on all fingers together, so it stands here and not in the gate of one arm; it watches what the gate let through.
+// Passivity works on all fingers together, so it stands here and not in the gate of one
+// arm; it watches what the gate let through.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,8 +27,8 @@ struct FingerMount {
   bool display_tactile = true;  // false: the force-only condition, the tactor stays parked
 };
 
-// Stands for a device's pose at a tick whose sample is older than the tick: the sample (zero-order hold), or the sample led on with its velocity
-// (first-order hold), for `most_lead` at the most.
+// Stands for a device's pose at a tick whose sample is older than the tick: the sample (zero-order hold), or the sample
+// led on with its velocity (first-order hold), for `most_lead` at the most.
 enum class PoseHold : std::uint8_t { kZero, kFirst };
 
 struct TickModel {
@@ -76,8 +77,9 @@ struct TickScratch {
   std::span<const grasp::FingerReport> fingers;  // what they felt, and still do where nothing changed
 };
 
-// One tick at time `now` [s, the clock of the samples]. Results in scratch.outputs and scratch.fingers. Allocates nothing, throws nothing.
-engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch, const std::vector<FingerInputs>& inputs,
-                        double now);
+// One tick at time `now` [s, the clock of the samples]. Results in scratch.outputs and
+// scratch.fingers. Allocates nothing, throws nothing.
+engine::StepReport tick(const TickModel& model, TickState& state, TickScratch& scratch,
+                        const std::vector<FingerInputs>& inputs, double now);
 
 }  // namespace pincer::tasks

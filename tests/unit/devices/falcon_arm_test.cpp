@@ -1,4 +1,5 @@
-// A Novint Falcon that isn't there: loading its firmware, homing, forces. Two threads meet in it. (Also run under ThreadSanitizer.)
+// A Novint Falcon that isn't there: loading its firmware, homing, forces. Two threads meet
+// in it. (Also run under ThreadSanitizer.)
 #include "pincer/devices/falcon/falcon_arm.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,8 @@ namespace {
 
 class EmulatedPort final : public FalconPort {
  public:
-  explicit EmulatedPort(std::size_t image_size, std::string place = "1-2") : falcon(image_size), place_(std::move(place)) {}
+  explicit EmulatedPort(std::size_t image_size, std::string place = "1-2")
+      : falcon(image_size), place_(std::move(place)) {}
 
   std::string place() const override { return place_; }
   bool control(std::uint8_t request, std::uint16_t value) override { return falcon.control(request, value); }
@@ -24,7 +26,9 @@ class EmulatedPort final : public FalconPort {
     falcon.write(bytes);
     return true;
   }
-  int read(std::span<std::uint8_t> bytes, int) override { return unplugged ? -1 : static_cast<int>(falcon.read(bytes)); }
+  int read(std::span<std::uint8_t> bytes, int) override {
+    return unplugged ? -1 : static_cast<int>(falcon.read(bytes));
+  }
 
   tests::EmulatedFalcon falcon;
   std::atomic<bool> unplugged{false};
@@ -94,7 +98,8 @@ TEST(FalconArm, HomesRendersForceAndDropsItWhenNobodyAsksAnyMore) {
   EXPECT_NEAR(sample.p_DF.x(), 0, 1e-3) << "equal angles: on the axis";
   EXPECT_NEAR((*inverse(sample.p_DF + Vec3(0, 0, kCentre)))[0], angleOf(-150), 1e-6);
   arm.commandForce(Vec3(0, 0, 2));
-  EXPECT_FALSE(soon([&, n = 0]() mutable { return falcon.torque0 != 0 || ++n > 20; }) && falcon.torque0 != 0) << "not armed";
+  EXPECT_FALSE(soon([&, n = 0]() mutable { return falcon.torque0 != 0 || ++n > 20; }) && falcon.torque0 != 0)
+      << "not armed";
   arm.arm();
   ASSERT_TRUE(soon([&] {
     arm.commandForce(Vec3(0, 0, 2));

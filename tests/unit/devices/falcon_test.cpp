@@ -31,7 +31,8 @@ TEST(FalconKinematics, LegsCloseAtTheGrip) {
   const Vec3 p(0.01, -0.02, 0.13);
   const Vec3 angles = *inverse(p);
   const double phi = 105 * 3.14159265358979 / 180;
-  const Vec3 P(std::cos(phi) * p.x() + std::sin(phi) * p.y() - g.r, -std::sin(phi) * p.x() + std::cos(phi) * p.y() - g.s, p.z());
+  const Vec3 P(std::cos(phi) * p.x() + std::sin(phi) * p.y() - g.r,
+               -std::sin(phi) * p.x() + std::cos(phi) * p.y() - g.s, p.z());
   const double t = angles[0];
   const double in_plane = std::hypot(P.x() + g.c - g.a * std::cos(t), P.z() - g.a * std::sin(t)) - g.d - g.e;
   EXPECT_NEAR(std::hypot(in_plane, P.y() + g.f), g.b, 1e-12);
@@ -72,7 +73,8 @@ TEST(FalconPacket, NumbersAreNibblesFromTheLeastOn) {
   const auto answer = answerIn(packet);
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->counts, (std::array<int, 3>{1447, -1, 0}));
-  EXPECT_EQ(answerIn(packetOf({{9999, -9999, 0}, false, 0}))->counts, (std::array<int, 3>{4096, -4096, 0})) << "bounded";
+  EXPECT_EQ(answerIn(packetOf({{9999, -9999, 0}, false, 0}))->counts, (std::array<int, 3>{4096, -4096, 0}))
+      << "bounded";
 }
 
 TEST(FalconPacket, IsFoundInWhateverPiecesAndRefusedWhenGarbled) {

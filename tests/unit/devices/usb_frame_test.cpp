@@ -146,8 +146,10 @@ TEST(UsbFrameOrder, AFrameThatComesLateIsNoLongerLost) {
 TEST(UsbClockMap, SeesHowOldAFrameIsThatWasHeldUp) {
   ClockMap map;
   for (int i = 0; i < 100; ++i)
-    EXPECT_LE(map.sentAt(static_cast<std::uint64_t>(1000 * i), 5'000'000'000 + 1'000'000 * i), 5'000'000'000 + 1'000'000 * i);
-  EXPECT_NEAR(static_cast<double>(map.sentAt(100'000, 5'110'000'000)), 5.1e9, 1e4) << "10 ms under way; 10 us: the allowance for drift";
+    EXPECT_LE(map.sentAt(static_cast<std::uint64_t>(1000 * i), 5'000'000'000 + 1'000'000 * i),
+              5'000'000'000 + 1'000'000 * i);
+  EXPECT_NEAR(static_cast<double>(map.sentAt(100'000, 5'110'000'000)), 5.1e9, 1e4)
+      << "10 ms under way; 10 us: the allowance for drift";
 }
 
 // A sender's clock 40 ppm slower than ours, for ten minutes.
@@ -166,7 +168,8 @@ TEST(UsbFrame, TheUdevRuleNamesTheProtocolsVendorAndProduct) {
   std::ifstream file(PINCER_SOURCE_DIR "/devices/usb/70-pincer.rules");
   const std::string rules{std::istreambuf_iterator<char>(file), {}};
   std::array<char, 64> match{};
-  std::snprintf(match.data(), match.size(), "ATTR{idVendor}==\"%04x\", ATTR{idProduct}==\"%04x\"", kVendorId, kProductId);
+  std::snprintf(match.data(), match.size(), "ATTR{idVendor}==\"%04x\", ATTR{idProduct}==\"%04x\"", kVendorId,
+                kProductId);
   EXPECT_NE(rules.find(match.data()), std::string::npos) << match.data();
   EXPECT_NE(rules.find("GROUP=\"plugdev\""), std::string::npos);
 }

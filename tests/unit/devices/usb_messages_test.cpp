@@ -68,7 +68,8 @@ TEST(UsbMessages, NothingThatIsNoNumberGetsOnTheWire) {
 TEST(UsbMessages, IdentityStatusAndCapabilitiesComeBack) {
   const Identity identity{DeviceKind::kDisplay, 7, 500, "pincer CLD", "0042"};
   EXPECT_EQ(identityIn(toFrame(identity)), identity);
-  const auto told = identityIn(toFrame(Identity{DeviceKind::kArm, 1, 1000, "arm", "A1", Linkage::kPremium, 0.072, 0.05}));
+  const auto told =
+      identityIn(toFrame(Identity{DeviceKind::kArm, 1, 1000, "arm", "A1", Linkage::kPremium, 0.072, 0.05}));
   ASSERT_TRUE(told && told->tip_mass);
   EXPECT_NEAR(*told->tip_mass, 0.072, 1e-12);
   EXPECT_NEAR(told->tip_damping, 0.05, 1e-12);
@@ -104,7 +105,8 @@ TEST(UsbMessages, CalibrationEntriesComeBack) {
   EXPECT_EQ(entry->value, -0.25);
   EXPECT_TRUE(calibrationIn(toFrame(CalibrationEntry{2, 0, "", 0}, FrameType::kReadCalibration)));
   EXPECT_TRUE(calibrationIn(toFrame(CalibrationEntry{2, 0, "base_x", 1}, FrameType::kWriteCalibration)));
-  EXPECT_FALSE(calibrationIn(toFrame(CalibrationEntry{5, 5, "base_x", 1}, FrameType::kCalibration))) << "index beyond the count";
+  EXPECT_FALSE(calibrationIn(toFrame(CalibrationEntry{5, 5, "base_x", 1}, FrameType::kCalibration)))
+      << "index beyond the count";
   EXPECT_FALSE(calibrationIn(toFrame(CalibrationEntry{0, 1, "", 1}, FrameType::kCalibration))) << "no name";
   EXPECT_FALSE(calibrationIn(toFrame(CalibrationEntry{0, 1, "x", tests::kNan}, FrameType::kCalibration)));
   EXPECT_FALSE(calibrationIn(toFrame(Identity{DeviceKind::kArm, 1, 1, "m", "s"})));
@@ -149,7 +151,8 @@ TEST(UsbMessages, RefuseEveryFieldOutOfRange) {
   EXPECT_FALSE(identityIn(poked(identity, 0, {3}))) << "an unknown kind";
   EXPECT_FALSE(identityIn(poked(identity, 35, {0xff, 0xff}))) << "a tip of 6.6 kg";
   EXPECT_FALSE(identityIn(poked(identity, 37, {0xff, 0xff}))) << "a friction of 65.5 N s/m";
-  EXPECT_FALSE(identityIn(poked(toFrame(Identity{DeviceKind::kDisplay, 1, 500, "model", "serial"}), 35, {1}))) << "a display with a tip";
+  EXPECT_FALSE(identityIn(poked(toFrame(Identity{DeviceKind::kDisplay, 1, 500, "model", "serial"}), 35, {1})))
+      << "a display with a tip";
   EXPECT_FALSE(identityIn(poked(identity, 4, {0, 0}))) << "a rate of 0";
   EXPECT_FALSE(identityIn(poked(identity, 6, {0}))) << "text behind its end";
   EXPECT_FALSE(identityIn(poked(identity, 7, {0x07}))) << "an unprintable character";
@@ -225,12 +228,14 @@ TEST(UsbMessages, EachRangeIsLookedAtOnBothSides) {
   };
   const Frame identity = toFrame(Identity{DeviceKind::kArm, 1, 1000, "arm", "A1"});
   ASSERT_TRUE(identityIn(identity));
-  for (const int rate : {0, 8001}) EXPECT_FALSE(identityIn(with(identity, 4, static_cast<std::uint16_t>(rate)))) << rate;
+  for (const int rate : {0, 8001})
+    EXPECT_FALSE(identityIn(with(identity, 4, static_cast<std::uint16_t>(rate)))) << rate;
   EXPECT_FALSE(identityIn(with(identity, 6, std::uint32_t{0}))) << "no model";
   EXPECT_FALSE(identityIn(with(identity, 22, std::uint16_t{0}))) << "no serial number";
   const Frame status = toFrame(Status{DeviceState::kReady, 0, 0, 0});
   ASSERT_TRUE(statusIn(status));
-  for (const int state : {0, 1, 5, 255}) EXPECT_FALSE(statusIn(with(status, 0, static_cast<std::uint8_t>(state)))) << state;
+  for (const int state : {0, 1, 5, 255})
+    EXPECT_FALSE(statusIn(with(status, 0, static_cast<std::uint8_t>(state)))) << state;
   ArmCapabilities can;
   can.peak_force = 8;
   can.continuous_force = 1;

@@ -1,4 +1,5 @@
-// The threads that meet in a USB host: the one that moves frames, the servo's, the watchdog's and the operator's. (Also run under ThreadSanitizer.)
+// The threads that meet in a USB host: the one that moves frames, the servo's, the watchdog's and the
+// operator's. (Also run under ThreadSanitizer.)
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -12,8 +13,8 @@
 namespace pincer::devices::usb {
 namespace {
 
-// An arm whose place and velocity are one number three times over, and that looks whether the forces it is sent are: a value that was read
-// while it was written shows.
+// An arm whose place and velocity are one number three times over, and that looks whether the forces it is sent are: a
+// value that was read while it was written shows.
 class WholeNumbersArm final : public emulation::Firmware {
  public:
   explicit WholeNumbersArm(const std::string& serial) : Firmware({DeviceKind::kArm, 1, 1000, "whole numbers", serial}) {
@@ -66,7 +67,9 @@ class HostThreads : public testing::Test {
   std::shared_ptr<WholeNumbersArm> number_arm = std::make_shared<WholeNumbersArm>("A1");
   std::shared_ptr<emulation::DisplayFirmware> number_display = std::make_shared<emulation::DisplayFirmware>("D1");
   tests::ThreadBusPlugs plugs{{number_arm, number_display}};
-  UsbHost host{monotonicNs, [this](UsbPorts& ports, Clock clock) { return std::make_unique<tests::ThreadBus>(ports, clock, plugs); }};
+  UsbHost host{monotonicNs, [this](UsbPorts& ports, Clock clock) {
+                 return std::make_unique<tests::ThreadBus>(ports, clock, plugs);
+               }};
 
   static bool soon(const std::function<bool()>& done) {
     for (int i = 0; i < 10000 && !done(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -87,7 +90,8 @@ TEST_F(HostThreads, ShareWholeValuesWhileDevicesComeAndGo) {
       const ArmSample sample = arm.sample();
       if (sample.valid) {
         ++samples;
-        if ((sample.p_DF - Vec3::Constant(sample.p_DF.x())).norm() > 0 || (*sample.v_DF - sample.p_DF).norm() > 1e-12) ++torn;
+        if ((sample.p_DF - Vec3::Constant(sample.p_DF.x())).norm() > 0 || (*sample.v_DF - sample.p_DF).norm() > 1e-12)
+          ++torn;
       }
       if (k % 400 == 0) arm.signal(Signal::kStart);
       arm.commandForce(Vec3::Constant(1e-3 * (1 + k % 1000)));

@@ -38,7 +38,8 @@ class PageReader {
     std::vector<std::uint32_t> values;
     std::uint32_t index = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t plane = 0; plane < 4; ++plane) index += static_cast<std::uint32_t>(planes[plane * count + i]) << (8 * plane);
+      for (std::size_t plane = 0; plane < 4; ++plane)
+        index += static_cast<std::uint32_t>(planes[plane * count + i]) << (8 * plane);
       values.push_back(index);
     }
     return values;

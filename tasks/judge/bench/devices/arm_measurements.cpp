@@ -20,7 +20,8 @@ void overArmWorkspace(Visit visit) {
   constexpr int n = 9;
   for (int i = 0; i < n * n * n; ++i) {
     const Vec3 share(i % n, (i / n) % n, i / (n * n));
-    visit(Vec3(premium::kWorkspaceMin_D + (premium::kWorkspaceMax_D - premium::kWorkspaceMin_D).cwiseProduct(share) / (n - 1)));
+    visit(Vec3(premium::kWorkspaceMin_D +
+               (premium::kWorkspaceMax_D - premium::kWorkspaceMin_D).cwiseProduct(share) / (n - 1)));
   }
 }
 
@@ -37,16 +38,19 @@ Vec3 renderedArmForce(const Vec3& p_D, const Vec3& f_D) {
   return arm.motorForce_D();
 }
 
-// The largest force along `direction` that the arm may render at `p_D`: its peak, or what its joints bear but for 2 %, because the tip gives
-// way a little, and its levers change with it.
+// The largest force along `direction` that the arm may render at `p_D`: its peak, or what its joints bear but for 2 %,
+// because the tip gives way a little, and its levers change with it.
 double mostArmForce(const Vec3& p_D, const Vec3& direction) {
   const devices::SimArm arm;
   const auto q = premium::inverse(p_D);
-  const double load = (premium::jacobian(*q).transpose() * direction).cwiseQuotient(arm.peakTorque()).cwiseAbs().maxCoeff();
+  const double load =
+      (premium::jacobian(*q).transpose() * direction).cwiseQuotient(arm.peakTorque()).cwiseAbs().maxCoeff();
   return std::min(arm.capabilities().peak_force, 0.98 / load);
 }
 
-double armForceError(const Vec3& p_D, const Vec3& wanted) { return 100 * (renderedArmForce(p_D, wanted) - wanted).norm() / wanted.norm(); }
+double armForceError(const Vec3& p_D, const Vec3& wanted) {
+  return 100 * (renderedArmForce(p_D, wanted) - wanted).norm() / wanted.norm();
+}
 
 std::vector<Record> armForceErrors(MeasureContext& context) {
   double continuous = 0, most = 0;

@@ -6,8 +6,8 @@ namespace pincer::tasks {
 
 std::vector<Measurement> deviceMeasurements(const DevicesBenchOptions& options) {
   std::vector<Measurement> all;
-  for (std::vector<Measurement> part : {displayMeasurements(), armMeasurements(), gateMeasurements(), haplyMeasurements(options),
-                                        weartMeasurements(), usbMeasurements(options)}) {
+  for (std::vector<Measurement> part : {displayMeasurements(), armMeasurements(), gateMeasurements(),
+                                        haplyMeasurements(options), weartMeasurements(), usbMeasurements(options)}) {
     std::move(part.begin(), part.end(), std::back_inserter(all));
   }
   return all;

@@ -17,7 +17,8 @@ using devices::SimOneDofCld;
 // A display as it is seen from outside: a place asked for, a millisecond, where the tactor then is.
 using DisplayProbe = std::function<double(double place)>;
 
-// A fresh 2-DOF display, watched along one axis on the cylindrical half of the finger, where the axes are the actuators'.
+// A fresh 2-DOF display, watched along one axis on the cylindrical half of the
+// finger, where the axes are the actuators'.
 DisplayProbe twoDofProbe(int axis) {
   return [cld = SimCld(), axis](double place) mutable {
     Vec2 place_L(-0.004, 0);
@@ -65,7 +66,8 @@ double bandwidthOf(const std::function<DisplayProbe()>& make) {
 }
 
 std::vector<Record> displayBacklash(MeasureContext&) {
-  const double pd = 1e3 * backlashOf([] { return twoDofProbe(0); }), ru = 1e3 * backlashOf([] { return twoDofProbe(1); });
+  const double pd = 1e3 * backlashOf([] { return twoDofProbe(0); }),
+               ru = 1e3 * backlashOf([] { return twoDofProbe(1); });
   return {atMost("proximal-distal, off the published 1.13 mm by", std::abs(pd - 1.13), "mm", 0.02),
           atMost("radial-ulnar, off the published 0.42 mm by", std::abs(ru - 0.42), "mm", 0.02)};
 }
@@ -125,8 +127,8 @@ std::vector<Record> policyErrors(double speed) {
   const devices::TactorErrors e = meter.result();
   return {atMost("rms error (people localise to 1.3 mm)", 1e3 * e.total, "mm", speed < 0.03 ? 1.3 : 4),
           unbounded("its share from bandwidth", 1e3 * e.bandwidth, "mm"),
-          unbounded(fmt::format("its share from backlash (noticed from {:.2f} / {:.2f} mm of play)", 1e3 * devices::kPlayLimitLowCurvature,
-                                1e3 * devices::kPlayLimitEdge),
+          unbounded(fmt::format("its share from backlash (noticed from {:.2f} / {:.2f} mm of play)",
+                                1e3 * devices::kPlayLimitLowCurvature, 1e3 * devices::kPlayLimitEdge),
                     1e3 * e.play, "mm"),
           unbounded("its share from delay", 1e3 * e.delay, "mm"),
           unbounded("quantisation of what the host is told", 1e3 * e.quantisation, "mm"),
@@ -134,7 +136,8 @@ std::vector<Record> policyErrors(double speed) {
 }
 
 std::vector<Record> displayLag(MeasureContext&) {
-  return {atMost("behind a slow ramp (people notice 61 ms)", 1e3 * devices::DisplayFigures{}.lag(), "ms", 1e3 * devices::kDelayLimit)};
+  return {atMost("behind a slow ramp (people notice 61 ms)", 1e3 * devices::DisplayFigures{}.lag(), "ms",
+                 1e3 * devices::kDelayLimit)};
 }
 
 }  // namespace

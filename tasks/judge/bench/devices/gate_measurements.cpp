@@ -22,7 +22,8 @@ class GateAdversary {
     in_.sample.valid = random_.below(2000) != 0;
     if (!in_.f_D.allFinite() || random_.below(20) == 0) in_.f_D = wish();
     in_.v_DF = Vec3(random_.uniform() - 0.5, random_.uniform() - 0.5, 0);
-    for (int i = 0; i < 9; ++i) J_(i / 3, i % 3) = std::clamp(J_(i / 3, i % 3) + 2e-4 * (random_.uniform() - 0.5), -0.3, 0.3);
+    for (int i = 0; i < 9; ++i)
+      J_(i / 3, i % 3) = std::clamp(J_(i / 3, i % 3) + 2e-4 * (random_.uniform() - 0.5), -0.3, 0.3);
     in_.sample.J = J_;
     return in_;
   }

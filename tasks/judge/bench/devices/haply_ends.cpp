@@ -39,9 +39,9 @@ double msToZero(int signal, DeadMan dead_man) {
   std::error_code error;
   const std::string self = std::filesystem::read_symlink("/proc/self/exe", error).string();
   // Its words are for nobody: the file "null" of the folder of devices.
-  const ChildProcess child(
-      {self, "devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes", "--watchdog", "100", "--service", server.place()},
-      "/dev", "null");
+  const ChildProcess child({self, "devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes",
+                            "--watchdog", "100", "--service", server.place()},
+                           "/dev", "null");
   for (int i = 0; i < 10'000 && server.force(0) < 0.1; ++i) pauseMs(1);
   const std::int64_t begin = devices::usb::monotonicNs();
   const bool pushed = server.force(0) > 0;
@@ -66,12 +66,14 @@ double medianMs(MeasureContext& context, int signal, DeadMan dead_man) {
 std::vector<Record> haplyEnds(MeasureContext& context) {
   std::vector<Record> records;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGABRT}) {
-    records.push_back(atMost(fmt::format("SIG{} to zero, where forces are kept for ever, median of {}", ::sigabbrev_np(signal), kDeaths),
-                             medianMs(context, signal, DeadMan::kKeepsForEver), "ms", 5));
+    records.push_back(atMost(
+        fmt::format("SIG{} to zero, where forces are kept for ever, median of {}", ::sigabbrev_np(signal), kDeaths),
+        medianMs(context, signal, DeadMan::kKeepsForEver), "ms", 5));
   }
   for (const int signal : {SIGKILL, SIGSTOP}) {
-    records.push_back(atMost(fmt::format("SIG{} to zero, where the service idles after {:.0f} ms", ::sigabbrev_np(signal), kIdleAfter),
-                             medianMs(context, signal, DeadMan::kIdleAfter), "ms", kIdleAfter + 1));
+    records.push_back(atMost(
+        fmt::format("SIG{} to zero, where the service idles after {:.0f} ms", ::sigabbrev_np(signal), kIdleAfter),
+        medianMs(context, signal, DeadMan::kIdleAfter), "ms", kIdleAfter + 1));
   }
   return records;
 }

@@ -1,4 +1,5 @@
-// Haply's Inverse3 over the emulated service, real sockets and threads in this process. Tails are this machine's, and so are only told.
+// Haply's Inverse3 over the emulated service, real sockets and threads in this process. Tails
+// are this machine's, and so are only told.
 #include <fmt/format.h>
 #include <malloc.h>
 #include <time.h>
@@ -181,7 +182,9 @@ std::vector<Record> zeros(MeasureContext& context) {
           context, [](HaplyServer&, HaplyHost& host) { return host.arm(0).stop(), 0; }, true));
   add("not a number", 1.5,
       timeToZero(
-          context, [](HaplyServer&, HaplyHost& host) { return host.arm(0).commandForce(Vec3::Constant(std::nan(""))), 0; }, false));
+          context,
+          [](HaplyServer&, HaplyHost& host) { return host.arm(0).commandForce(Vec3::Constant(std::nan(""))), 0; },
+          false));
   add("a stalled servo", 5,
       timeToZero(
           context, [](HaplyServer&, HaplyHost&) { return 0; }, false));
@@ -235,7 +238,8 @@ std::vector<Record> connections(MeasureContext& context, int cycles) {
   return {exactly(fmt::format("descriptors left behind by {} connections", cycles),
                   static_cast<double>(entriesIn("/proc/self/fd") - descriptors), "-", 0),
           exactly("threads left behind", static_cast<double>(entriesIn("/proc/self/task") - threads), "-", 0),
-          atMost("memory per connection, the service's too", (static_cast<double>(::mallinfo2().uordblks) - bytes) / cycles, "bytes", 100),
+          atMost("memory per connection, the service's too",
+                 (static_cast<double>(::mallinfo2().uordblks) - bytes) / cycles, "bytes", 100),
           atMost("from nothing to samples, slowest", slowest_sample, "ms", 300),
           unbounded("from nothing to ready, half a second of zeros included, slowest", slowest, "ms")};
 }
@@ -290,13 +294,15 @@ void sufferFault(HaplyFault fault, Phase phase, FaultCounts& counts) {
   ++counts.done;
 }
 
-// Every fault from every phase on: where does a force last, or is stronger than asked for, or a sample counts that isn't sound?
+// Every fault from every phase on: where does a force last, or is stronger than asked
+// for, or a sample counts that isn't sound?
 std::vector<Record> faults(MeasureContext& context) {
   FaultCounts counts;
   std::size_t begun = 0;
   for (const Phase phase : kPhases) {
     for (std::size_t k = 1; k < devices::emulate::kHaplyFaults && !context.interrupted(); ++k) {
-      context.progress(static_cast<double>(begun++) / static_cast<double>(kPhases.size() * devices::emulate::kHaplyFaults));
+      context.progress(static_cast<double>(begun++) /
+                       static_cast<double>(kPhases.size() * devices::emulate::kHaplyFaults));
       sufferFault(static_cast<HaplyFault>(k), phase, counts);
     }
   }
@@ -314,8 +320,9 @@ std::vector<Measurement> haplyMeasurements(const DevicesBenchOptions& options) {
           {"haply/faults", faults},
           {"haply/ends", haplyEnds},
           {"haply/texts", haplyTexts},
-          {"haply/connections",
-           [n = options.cycles](MeasureContext& context) { return connections(context, std::max(1, context.thorough ? n : n / kOneIn)); }}};
+          {"haply/connections", [n = options.cycles](MeasureContext& context) {
+             return connections(context, std::max(1, context.thorough ? n : n / kOneIn));
+           }}};
 }
 
 }  // namespace pincer::tasks

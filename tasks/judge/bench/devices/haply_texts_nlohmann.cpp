@@ -20,7 +20,9 @@ constexpr std::int64_t kUsual = 20'000, kThorough = 10'000'000;
 constexpr std::size_t kMostChanges = 7;
 
 bool isSound(const DeviceReport& device) {
-  const auto within = [](const std::optional<Vec3>& v, double most) { return !v || (v->allFinite() && v->cwiseAbs().maxCoeff() <= most); };
+  const auto within = [](const std::optional<Vec3>& v, double most) {
+    return !v || (v->allFinite() && v->cwiseAbs().maxCoeff() <= most);
+  };
   const bool turn = !device.q_H || std::abs(device.q_H->norm() - 1) < 1e-9;
   return within(device.p_H, 2) && within(device.v_H, 20) && turn;
 }
@@ -48,7 +50,8 @@ std::vector<Record> haplyTexts(MeasureContext& context) {
     no_json += nlohmann::json::accept(text) ? 0 : 1;
     for (std::size_t i = 0; i < message.count; ++i) unsound += isSound(message.devices[i]) ? 0 : 1;
   }
-  return {unbounded("mutated messages", static_cast<double>(done), "-"), unbounded("of them sound", static_cast<double>(taken), "-"),
+  return {unbounded("mutated messages", static_cast<double>(done), "-"),
+          unbounded("of them sound", static_cast<double>(taken), "-"),
           exactly("taken though no JSON", static_cast<double>(no_json), "-", 0),
           exactly("taken though not finite or out of range", static_cast<double>(unsound), "-", 0)};
 }

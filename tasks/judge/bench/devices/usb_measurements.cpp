@@ -51,7 +51,8 @@ ChildProcess started(std::vector<std::string> arguments) {
     return ChildProcess(std::move(arguments));
   } catch (const std::system_error& error) {
     throw InputError(
-        fmt::format("bench devices: {} can't be run: {}. It is built with the tests where umockdev is installed: tests/run --quick.",
+        fmt::format("bench devices: {} can't be run: {}. It is built with the tests where umockdev is installed: "
+                    "tests/run --quick.",
                     program, error.code().message()));
   }
 }
@@ -59,8 +60,9 @@ ChildProcess started(std::vector<std::string> arguments) {
 std::vector<Record> measureUsb(const DevicesBenchOptions& options, MeasureContext& context) {
   const std::string program = options.usb.empty() ? besideThisProgram("devices_bench") : options.usb;
   if (access(program.c_str(), X_OK) != 0) {
-    throw InputError(
-        fmt::format("bench devices: {} isn't there. It is built with the tests where umockdev is installed: tests/run --quick.", program));
+    throw InputError(fmt::format(
+        "bench devices: {} isn't there. It is built with the tests where umockdev is installed: tests/run --quick.",
+        program));
   }
   ChildProcess child = started({program, fmt::format("{}", options.seconds), fmt::format("{}", options.cycles)});
   std::vector<Record> records;
@@ -71,14 +73,16 @@ std::vector<Record> measureUsb(const DevicesBenchOptions& options, MeasureContex
   }
   const int status = child.wait(context.interrupted);
   if (records.empty() || status != 0) {
-    throw InputError(fmt::format("bench devices: {} {} {} ended early, after {} figures (status {}); run it by hand to see why.", program,
-                                 options.seconds, options.cycles, records.size(), status));
+    throw InputError(
+        fmt::format("bench devices: {} {} {} ended early, after {} figures (status {}); run it by hand to see why.",
+                    program, options.seconds, options.cycles, records.size(), status));
   }
   return records;
 }
 
 // Every line that the program prints.
-void eachLine(std::vector<std::string> arguments, MeasureContext& context, const std::function<void(const std::string&)>& take) {
+void eachLine(std::vector<std::string> arguments, MeasureContext& context,
+              const std::function<void(const std::string&)>& take) {
   ChildProcess child = started(std::move(arguments));
   for (std::string line; child.readLine(line, context.interrupted);) take(line);
 }
@@ -91,14 +95,18 @@ struct TestedDevices {
 
 TestedDevices testedOver(double seconds, MeasureContext& context) {
   TestedDevices tested;
-  const std::vector<std::string> command{
-      besideThisProgram("device_emulator"), besideThisProgram("pincer"), "devices", "test", "--seconds", fmt::format("{}", seconds)};
+  const std::vector<std::string> command{besideThisProgram("device_emulator"),
+                                         besideThisProgram("pincer"),
+                                         "devices",
+                                         "test",
+                                         "--seconds",
+                                         fmt::format("{}", seconds)};
   eachLine(command, context, [&](const std::string& line) {
     const auto at = line.find(" frames, ");
     if (at == std::string::npos) return;
     long long lost = 0, unsound = 0, answers = 0, commands = 1;
-    if (std::sscanf(line.c_str() + at, " frames, %lld lost, %lld unsound, %lld of %lld commands", &lost, &unsound, &answers, &commands) !=
-        4)
+    if (std::sscanf(line.c_str() + at, " frames, %lld lost, %lld unsound, %lld of %lld commands", &lost, &unsound,
+                    &answers, &commands) != 4)
       return;
     ++tested.devices;
     tested.lost += static_cast<double>(lost);
@@ -108,7 +116,8 @@ TestedDevices testedOver(double seconds, MeasureContext& context) {
   return tested;
 }
 
-// From SIGSTOP of the whole program to the last motor without force, as the devices' own process sees it [ms]; infinite where it wasn't seen.
+// From SIGSTOP of the whole program to the last motor without force, as the devices' own process
+// sees it [ms]; infinite where it wasn't seen.
 double msAfterSigstop(MeasureContext& context) {
   double ms = std::numeric_limits<double>::infinity();
   const std::vector<std::string> command{besideThisProgram("device_emulator"),
@@ -122,8 +131,9 @@ double msAfterSigstop(MeasureContext& context) {
                                          "--force",
                                          "0.3",
                                          "--yes"};
-  eachLine(command, context,
-           [&](const std::string& line) { std::sscanf(line.c_str(), "stopped: every motor without force after %lf ms", &ms); });
+  eachLine(command, context, [&](const std::string& line) {
+    std::sscanf(line.c_str(), "stopped: every motor without force after %lf ms", &ms);
+  });
   return ms;
 }
 

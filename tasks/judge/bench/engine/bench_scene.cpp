@@ -6,8 +6,8 @@ namespace pincer::tasks {
 
 std::vector<BenchScene> benchScenes(bool whole) {
   std::vector<BenchScene> all;
-  for (std::vector<BenchScene> part : {benchFreeScenes(whole), benchSlidingScenes(), benchPinchScenes(whole), benchRestingScenes(whole),
-                                       benchImpactScenes(whole), benchTopplingScenes()}) {
+  for (std::vector<BenchScene> part : {benchFreeScenes(whole), benchSlidingScenes(), benchPinchScenes(whole),
+                                       benchRestingScenes(whole), benchImpactScenes(whole), benchTopplingScenes()}) {
     std::move(part.begin(), part.end(), std::back_inserter(all));
   }
   return all;

@@ -1,6 +1,8 @@
-// bench_scene: a world, how long it runs, and what its error is: the distance from an exact answer (tasks/judge/exact), in one number.
+// bench_scene: a world, how long it runs, and what its error is: the distance from an exact
+// answer (tasks/judge/exact), in one number.
 //
-// A judge also says whether the scene moved as it should at all: a box that sticks where it should slide has no error worth a plot, it failed.
+// A judge also says whether the scene moved as it should at all: a box that sticks where it should
+// slide has no error worth a plot, it failed.
 #pragma once
 #include <limits>
 #include <string>
@@ -18,8 +20,9 @@ struct BenchVerdict {
 };
 
 struct BenchJudge {
-  std::function<bool(double t, BenchEngine&)> look = {};  // after each step; false ends the run. Null: nothing to look at
-  std::function<BenchVerdict(BenchEngine&)> verdict;      // at the end
+  // after each step; false ends the run. Null: nothing to look at
+  std::function<bool(double t, BenchEngine&)> look = {};
+  std::function<BenchVerdict(BenchEngine&)> verdict;  // at the end
 };
 
 struct BenchScene {
@@ -50,8 +53,10 @@ std::vector<BenchScene> benchTopplingScenes();
 
 // Bodies that many scenes have.
 BenchBody benchFloor();
-BenchBody benchBall(double mass, double radius, const Vec3& p_W, const Vec3& v_W = Vec3::Zero(), const Vec3& w_W = Vec3::Zero());
-BenchBody benchBox(double mass, const Vec3& half, const Vec3& p_W, const Vec3& v_W = Vec3::Zero(), const Vec3& w_W = Vec3::Zero());
+BenchBody benchBall(double mass, double radius, const Vec3& p_W, const Vec3& v_W = Vec3::Zero(),
+                    const Vec3& w_W = Vec3::Zero());
+BenchBody benchBox(double mass, const Vec3& half, const Vec3& p_W, const Vec3& v_W = Vec3::Zero(),
+                   const Vec3& w_W = Vec3::Zero());
 
 // A fingertip of 8 mm and 50 g, free along `axis` (0: x, 1: y), which `force` [N] pushes, signed.
 BenchBody benchFinger(const Vec3& p_W, int axis, const std::function<double(double t)>& force);

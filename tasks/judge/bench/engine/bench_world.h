@@ -1,6 +1,8 @@
-// bench_world: a scene as `pincer bench engine` tells it to every engine, and the little that it asks of one: step, read.
+// bench_world: a scene as `pincer bench engine` tells it to every engine, and
+// the little that it asks of one: step, read.
 //
-// World frame W, z up; a body's frame B is its shape's, at the centre of mass. Every two bodies have the friction `mu` and the restitution.
+// World frame W, z up; a body's frame B is its shape's, at the centre of mass. Every two bodies
+// have the friction `mu` and the restitution.
 #pragma once
 #include <array>
 #include <functional>
@@ -12,7 +14,8 @@
 
 namespace pincer::tasks {
 
-// Where a guided body is pulled to, and what pushes it:  f + k (p - p_WB) + d (v - v_WB), along each axis that it may move on.
+// Where a guided body is pulled to, and what pushes it:  f + k (p - p_WB) + d (v - v_WB),
+//                                                        along each axis that it may move on.
 struct BenchAim {
   Vec3 p_W = Vec3::Zero(), v_W = Vec3::Zero(), f_W = Vec3::Zero();
 };
@@ -80,8 +83,8 @@ std::vector<Contestant> pincerContestants();
 // Other engines, each at its documented best (tasks/judge/peers); none in a build without -DPINCER_PEERS=ON.
 std::vector<Contestant> enginePeers();
 
-// The force on a guided body along its free axes at time t, where its engine has no spring of its own: the damper as it is at the end
-// of a step of h, so that it is stable.
+// The force on a guided body along its free axes at time t, where its engine has no spring of its own: the damper as it
+// is at the end of a step of h, so that it is stable.
 Vec3 guidingForce(const BenchBody& body, const BenchMotion& motion, double t, double h);
 
 }  // namespace pincer::tasks

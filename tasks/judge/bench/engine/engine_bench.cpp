@@ -36,16 +36,18 @@ struct EngineTables {
   void add(const BenchScene& scene, const std::vector<Contestant>& contestants, const std::vector<RaceRun>& results) {
     for (const RaceRun& run : results) {
       const Contestant& c = contestants[run.contestant];
-      runs.row(std::string_view(scene.name), std::string_view(c.engine), std::string_view(c.setting), 1e3 * run.step.h, run.step.tolerance,
-               std::string_view(scene.metric), run.error, std::string_view(scene.unit), run.us_per_step, run.us_per_step / run.step.h,
-               std::string_view(run.failure), std::string_view(run.complaint));
+      runs.row(std::string_view(scene.name), std::string_view(c.engine), std::string_view(c.setting), 1e3 * run.step.h,
+               run.step.tolerance, std::string_view(scene.metric), run.error, std::string_view(scene.unit),
+               run.us_per_step, run.us_per_step / run.step.h, std::string_view(run.failure),
+               std::string_view(run.complaint));
     }
     const Comparison c = compareWithPeers(contestants, results);
     if (!c.any) return;
     const auto value = [](const std::optional<double>& x) { return x.value_or(std::nan("")); };
-    ratios.row(std::string_view(scene.name), std::string_view(contestants[c.best.contestant].name()), 1e3 * c.best.step.h, c.best.error,
-               std::string_view(scene.unit), c.best.point().cost, value(c.at_best.error), value(c.at_best.cost), c.own.error,
-               c.own.us_per_step, value(c.at_own.error), value(c.at_own.cost));
+    ratios.row(std::string_view(scene.name), std::string_view(contestants[c.best.contestant].name()),
+               1e3 * c.best.step.h, c.best.error, std::string_view(scene.unit), c.best.point().cost,
+               value(c.at_best.error), value(c.at_best.cost), c.own.error, c.own.us_per_step, value(c.at_own.error),
+               value(c.at_own.cost));
   }
 
   void write(const std::string& directory) const {
@@ -54,8 +56,8 @@ struct EngineTables {
   }
 };
 
-std::vector<Record> runBenchScene(const BenchScene& scene, const std::vector<Contestant>& contestants, const EngineBenchOptions& options,
-                                  EngineTables& tables, MeasureContext& context) {
+std::vector<Record> runBenchScene(const BenchScene& scene, const std::vector<Contestant>& contestants,
+                                  const EngineBenchOptions& options, EngineTables& tables, MeasureContext& context) {
   const std::vector<RaceRun> runs = race(scene, contestants, options.race, context);
   if (context.interrupted()) return {};
   if (!options.out.empty()) {
@@ -74,7 +76,8 @@ std::vector<Measurement> engineMeasurements(const EngineBenchOptions& options) {
     std::vector<Contestant> peers = enginePeers();
     if (peers.empty()) {
       throw InputError(
-          "--peers: no other engine is built in. Configure with -DPINCER_PEERS=ON; .ci/packages lists what that needs (\"peer\").");
+          "--peers: no other engine is built in. Configure with -DPINCER_PEERS=ON; .ci/packages lists what that needs "
+          "(\"peer\").");
     }
     std::move(peers.begin(), peers.end(), std::back_inserter(contestants));
   }
@@ -82,7 +85,9 @@ std::vector<Measurement> engineMeasurements(const EngineBenchOptions& options) {
   const auto tables = std::make_shared<EngineTables>();
   for (BenchScene& scene : benchScenes(options.whole)) {
     const auto shared = std::make_shared<const BenchScene>(std::move(scene));
-    const auto run = [=](MeasureContext& context) { return runBenchScene(*shared, contestants, options, *tables, context); };
+    const auto run = [=](MeasureContext& context) {
+      return runBenchScene(*shared, contestants, options, *tables, context);
+    };
     measurements.push_back({shared->name, run});
   }
   measurements.push_back(stepLatencyMeasurement(contestants));

@@ -1,4 +1,5 @@
-// engine_bench: `pincer bench engine`: accuracy against cost, scene by scene, for pincer and the engines that are built in.
+// engine_bench: `pincer bench engine`: accuracy against cost, scene by scene, for
+// pincer and the engines that are built in.
 #pragma once
 #include <string>
 #include <vector>
@@ -31,8 +32,10 @@ Measurement sleepMeasurement(int rounds);
 // Walls of bricks, heaps of balls and hulls, pegs in holes, by sizes; `whole`: stand for a minute, and the large ones.
 std::vector<Measurement> familyMeasurements(bool whole);
 
-// The records of a scene: pincer's runs against its bounds, the others' beside them, and the ratios to the best of them.
-std::vector<Record> recordsOfRace(const BenchScene& scene, const std::vector<Contestant>& contestants, const std::vector<RaceRun>& runs);
+// The records of a scene: pincer's runs against its bounds, the others' beside
+// them, and the ratios to the best of them.
+std::vector<Record> recordsOfRace(const BenchScene& scene, const std::vector<Contestant>& contestants,
+                                  const std::vector<RaceRun>& runs);
 
 // How pincer compares with all other engines together.
 struct Comparison {
@@ -40,8 +43,10 @@ struct Comparison {
   RaceRun best;        // of the peers': the least error, whatever it cost
   WorkRatios at_best;  // there: pincer's error at its cost, pincer's cost at its error
   RaceRun own;         // pincer's plain run at 1 ms
-  WorkRatios at_own;   // there: pincer's error over the peers' at equal cost, and cost at equal error; none: no peer is as cheap, as good
-  double share_of_goal = 0;  // the lesser of at_best.error / 1e-3 and at_best.cost / 0.5; the goal is met up to 1. NaN: neither is known
+  // there: pincer's error over the peers' at equal cost, and cost at equal error; none: no peer is as cheap, as good
+  WorkRatios at_own;
+  // the lesser of at_best.error / 1e-3 and at_best.cost / 0.5; the goal is met up to 1. NaN: neither is known
+  double share_of_goal = 0;
 };
 Comparison compareWithPeers(const std::vector<Contestant>& contestants, const std::vector<RaceRun>& runs);
 

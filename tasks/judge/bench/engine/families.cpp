@@ -1,4 +1,5 @@
-// Families of scenes, pincer alone: what they cost tick by tick, how far they are off, whether they come to rest. (Beside peers: walls/3x8 of scenes_resting.cpp.)
+// Families of scenes, pincer alone: what they cost tick by tick, how far they are off, whether they come to rest.
+// (Beside peers: walls/3x8 of scenes_resting.cpp.)
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +54,8 @@ class FamilyRunner {
   }
   double overlap() const {
     double deepest = 0;
-    for (int k = 0; k < engine::contactCount(*scratch_); ++k) deepest = std::max(deepest, -engine::contactAt(*scratch_, k).gap);
+    for (int k = 0; k < engine::contactCount(*scratch_); ++k)
+      deepest = std::max(deepest, -engine::contactAt(*scratch_, k).gap);
     return deepest;
   }
   // Error of all that can be seen: places and velocities.
@@ -106,19 +108,22 @@ Measurement wallMeasurement(const std::string& name, const WallSpec& spec, doubl
 Measurement hitMeasurement(const std::string& name, const WallSpec& spec, double seconds) {
   return {"walls/" + name, [=](MeasureContext& context) {
             const FamilyRun run = FamilyRunner(wallWorld(spec)).run(seconds, context);
-            std::vector<Record> records = {unbounded("ticks flagged", run.flagged, "-"),
-                                           unbounded("tick, longest over the mean", shareOf(run.us, 1) / meanOf(run.us), "-")};
+            std::vector<Record> records = {
+                unbounded("ticks flagged", run.flagged, "-"),
+                unbounded("tick, longest over the mean", shareOf(run.us, 1) / meanOf(run.us), "-")};
             addCosts(run, records);
             return records;
           }};
 }
 
-Measurement heapMeasurement(const std::string& name, const std::function<FamilyWorld()>& make, double seconds, double bound_um) {
+Measurement heapMeasurement(const std::string& name, const std::function<FamilyWorld()>& make, double seconds,
+                            double bound_um) {
   return {name, [=](MeasureContext& context) {
             const FamilyRun run = FamilyRunner(make()).run(seconds, context);
-            std::vector<Record> records = {atMost("overlap at the end", 1e6 * run.end_overlap, "um", bound_um),
-                                           unbounded("overlap, deepest", 1e6 * run.overlap, "um"),
-                                           unbounded("ticks flagged", 100.0 * run.flagged / static_cast<double>(run.us.size()), "%")};
+            std::vector<Record> records = {
+                atMost("overlap at the end", 1e6 * run.end_overlap, "um", bound_um),
+                unbounded("overlap, deepest", 1e6 * run.overlap, "um"),
+                unbounded("ticks flagged", 100.0 * run.flagged / static_cast<double>(run.us.size()), "%")};
             addCosts(run, records);
             return records;
           }};
@@ -146,8 +151,8 @@ std::vector<Measurement> familyMeasurements(bool whole) {
         fmt::format("pegs/play-{}um", 1e6 * play), [=] { return pegWorld(play, 8e-3); }, 0.5, 20));
   if (!whole) return all;
   for (const auto& [columns, rows] : {std::pair(20, 6), {20, 10}, {40, 20}})
-    all.push_back(
-        wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, columns * rows > 400 ? 10 : stands));
+    all.push_back(wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows},
+                                  columns * rows > 400 ? 10 : stands));
   all.push_back(wallMeasurement("20x10-jitter-10um", {.columns = 20, .rows = 10, .jitter = 1e-5}, 10));
   all.push_back(hitMeasurement("20x10-hit", {.columns = 20, .rows = 10, .hit_speed = 10}, 1));
   all.push_back(wallMeasurement("3x8-masses-1e3", {.columns = 3, .rows = 8, .mass_ratio = 1e3}, 10));

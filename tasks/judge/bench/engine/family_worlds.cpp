@@ -11,7 +11,8 @@
 namespace pincer::tasks {
 namespace {
 
-// Uniform numbers: a linear congruential sequence (D. E. Knuth, The Art of Computer Programming 2, 3rd ed., 1997, 3.3.4, line 26).
+// Uniform numbers: a linear congruential sequence (D. E. Knuth, The Art of Computer
+// Programming 2, 3rd ed., 1997, 3.3.4, line 26).
 class Uniform {
  public:
   explicit Uniform(std::uint64_t seed) : state_(seed) {}
@@ -48,15 +49,16 @@ class WorldMaker {
     add("floor", contact::HalfSpace{}, 0, Vec3::Zero());
   }
   // Of no mass: it never moves.
-  void add(const std::string& name, const contact::Shape& shape, double mass, const Vec3& p, const Quat& q = Quat::Identity(),
-           const Vec3& v = Vec3::Zero()) {
+  void add(const std::string& name, const contact::Shape& shape, double mass, const Vec3& p,
+           const Quat& q = Quat::Identity(), const Vec3& v = Vec3::Zero()) {
     bodies_.push_back({name, shape, mass > 0, mass, material_});
     starts_.push_back({{q, p}, v, Vec3::Zero()});
   }
   // Four walls around the z axis, `half` from it.
   void addCrate(double half) {
     for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
-      add(fmt::format("side{}", bodies_.size()), contact::HalfSpace{}, 0, -half * n, Quat::FromTwoVectors(Vec3::UnitZ(), n));
+      add(fmt::format("side{}", bodies_.size()), contact::HalfSpace{}, 0, -half * n,
+          Quat::FromTwoVectors(Vec3::UnitZ(), n));
   }
   FamilyWorld make() const {
     engine::WorldBuilder builder(options_);
@@ -111,7 +113,8 @@ FamilyWorld hullWorld(int hulls, std::uint64_t seed) {
     const Vec3 p(kSpacing * (column - 1), kSpacing * (row - 1), 0.03 + kSpacing * layer), axis = uniform.direction();
     const Quat q = quatFromRotationVector(uniform(0, 3) * axis);
     const std::string name = fmt::format("hull{}", i);
-    maker.add(name, contact::Convex{contact::Polytope::hullOf(corners, name)}, kFilled * kDensity * 4.19 * half.prod(), p, q);
+    maker.add(name, contact::Convex{contact::Polytope::hullOf(corners, name)}, kFilled * kDensity * 4.19 * half.prod(),
+              p, q);
   }
   return maker.make();
 }

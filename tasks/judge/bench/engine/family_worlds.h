@@ -1,4 +1,5 @@
-// family_worlds: worlds by families and sizes: walls of bricks, heaps of hulls and of balls, pegs in holes. World frame W, z up; body 0 is the floor.
+// family_worlds: worlds by families and sizes: walls of bricks, heaps of hulls and of balls, pegs in holes.
+// World frame W, z up; body 0 is the floor.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -25,13 +26,15 @@ struct WallSpec {
 };
 FamilyWorld wallWorld(const WallSpec& spec);
 
-// Hulls of 20 corners in random directions on ellipsoids of half axes 12 to 18 mm, of water's density, fall in layers of nine into a box of 120 x 120 mm; mu 0.5.
+// Hulls of 20 corners in random directions on ellipsoids of half axes 12 to 18 mm, of water's density, fall in layers
+// of nine into a box of 120 x 120 mm; mu 0.5.
 FamilyWorld hullWorld(int hulls, std::uint64_t seed);
 
 // Balls of 10 mm radius and 50 g fall into a box with room for `side` x `side` of them in a layer; mu 0.5.
 FamilyWorld ballWorld(int balls, int side, std::uint64_t seed);
 
-// A cylinder of 10 mm radius, 60 mm long, 100 g, tilted by `tilt` [rad], falls into eight boxes round a hole wider by `play` [m]; mu 0.2. The peg is the last body.
+// A cylinder of 10 mm radius, 60 mm long, 100 g, tilted by `tilt` [rad], falls into eight boxes round a hole wider by
+// `play` [m]; mu 0.2. The peg is the last body.
 FamilyWorld pegWorld(double play, double tilt);
 
 }  // namespace pincer::tasks

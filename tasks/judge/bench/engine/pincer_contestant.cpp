@@ -1,4 +1,5 @@
-// pincer as a contestant: fingertips are its driven points, pads bodies on sliders that massless points push, hinges its pivots.
+// pincer as a contestant: fingertips are its driven points, pads bodies on sliders that
+// massless points push, hinges its pivots.
 #include <fmt/format.h>
 
 #include "pincer/grasp/step.h"
@@ -7,7 +8,9 @@
 namespace pincer::tasks {
 namespace {
 
-bool isFingertip(const BenchBody& body) { return body.kind == BenchKind::kGuided && std::holds_alternative<contact::Sphere>(body.shape); }
+bool isFingertip(const BenchBody& body) {
+  return body.kind == BenchKind::kGuided && std::holds_alternative<contact::Sphere>(body.shape);
+}
 bool isPad(const BenchBody& body) { return body.kind == BenchKind::kGuided && !isFingertip(body); }
 
 int freeAxisOf(const BenchBody& body) {
@@ -16,8 +19,9 @@ int freeAxisOf(const BenchBody& body) {
   return axis;
 }
 
-constexpr std::size_t kMostWithin = 12;                      // bodies of a world that is run with a tolerance
-constexpr double kPusherRadius = 0.008, kPusherMass = 1e-3;  // of the point that pushes a pad: what it presses with is what counts
+constexpr std::size_t kMostWithin = 12;  // bodies of a world that is run with a tolerance
+// of the point that pushes a pad: what it presses with is what counts
+constexpr double kPusherRadius = 0.008, kPusherMass = 1e-3;
 
 class PincerEngine : public BenchEngine {
  public:
@@ -60,11 +64,13 @@ class PincerEngine : public BenchEngine {
   BenchMotion motion(int i) override {
     const int body = body_of_[static_cast<std::size_t>(i)];
     if (body >= 0) {
-      return {engine::bodyPose(model_.world, state_.world, body), state_.world.bodies[static_cast<std::size_t>(body)].v_W,
+      return {engine::bodyPose(model_.world, state_.world, body),
+              state_.world.bodies[static_cast<std::size_t>(body)].v_W,
               engine::bodyAngularVelocity(model_.world, state_.world, body)};
     }
     for (std::size_t k = 0; k < finger_of_.size(); ++k) {
-      if (finger_of_[k] == i) return {{Quat::Identity(), state_.world.points[k].p_W}, state_.world.points[k].v_W, Vec3::Zero()};
+      if (finger_of_[k] == i)
+        return {{Quat::Identity(), state_.world.points[k].p_W}, state_.world.points[k].v_W, Vec3::Zero()};
     }
     return {};
   }
@@ -94,7 +100,8 @@ class PincerEngine : public BenchEngine {
     spec.material = {world_.mu, world_.mu, world_.restitution, 0};
     starts.push_back({body.X_WB, body.v_W, body.w_W});
     const int index = builder.addBody(spec);
-    if (body.kind == BenchKind::kHinged) builder.addJoint(jointOf(body, index, engine::JointKind::kPivot, body.hinge_W, Vec3::UnitY()));
+    if (body.kind == BenchKind::kHinged)
+      builder.addJoint(jointOf(body, index, engine::JointKind::kPivot, body.hinge_W, Vec3::UnitY()));
     if (isPad(body)) {
       const int axis = freeAxisOf(body);
       engine::JointModel slider = jointOf(body, index, engine::JointKind::kSlider, body.X_WB.p, Vec3::Unit(axis));
@@ -104,7 +111,8 @@ class PincerEngine : public BenchEngine {
     return index;
   }
 
-  static engine::JointModel jointOf(const BenchBody& body, int index, engine::JointKind kind, const Vec3& p_W, const Vec3& axis_W) {
+  static engine::JointModel jointOf(const BenchBody& body, int index, engine::JointKind kind, const Vec3& p_W,
+                                    const Vec3& axis_W) {
     const Pose X_WJ{Quat::FromTwoVectors(Vec3::UnitZ(), axis_W), p_W};
     return {kind, index, -1, body.X_WB.inverse() * X_WJ, X_WJ, 0};
   }
@@ -152,7 +160,9 @@ std::vector<Contestant> pincerContestants() {
   };
   const auto always = [](const BenchWorld&) { return std::string(); };
   const auto if_small = [](const BenchWorld& world) {
-    return world.bodies.size() > kMostWithin ? fmt::format("not run with more than {} bodies, for its cost", kMostWithin) : std::string();
+    return world.bodies.size() > kMostWithin
+               ? fmt::format("not run with more than {} bodies, for its cost", kMostWithin)
+               : std::string();
   };
   Contestant plain{"pincer", "", {}, {}, always, make}, within{"pincer", "with tolerance", {}, {}, if_small, make};
   for (const double tolerance : {1e-7, 1e-9, 1e-11}) within.ladder.push_back({1e-3, tolerance});

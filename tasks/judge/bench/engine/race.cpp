@@ -44,7 +44,8 @@ void judgeRun(const BenchScene& scene, const Contestant& contestant, MeasureCont
     if (context.interrupted()) return;
     const double used = threadCpuSeconds() - start;
     if (used < scene.patience) continue;
-    run.failure = fmt::format("too slow: {:.3g} s of processor time for {:.3g} s", used, static_cast<double>(run.steps) * run.step.h);
+    run.failure = fmt::format("too slow: {:.3g} s of processor time for {:.3g} s", used,
+                              static_cast<double>(run.steps) * run.step.h);
     return;
   }
   run.judged_per_step = (threadCpuSeconds() - start) / static_cast<double>(run.steps);
@@ -62,10 +63,13 @@ double secondsOf(const BenchScene& scene, const Contestant& contestant, const Ra
   return threadCpuSeconds() - start;
 }
 
-// One round of timing. Short scenes are run several times, to be felt by the clock; of long and even ones the first part is.
+// One round of timing. Short scenes are run several times, to be felt by the clock;
+// of long and even ones the first part is.
 void timeRun(const BenchScene& scene, const Contestant& contestant, const RaceOptions& options, RaceRun& run) {
   std::int64_t steps = run.steps;
-  if (scene.even) steps = std::min(steps, std::max<std::int64_t>(options.least_steps, std::llround(options.seconds / run.judged_per_step)));
+  if (scene.even)
+    steps = std::min(steps,
+                     std::max<std::int64_t>(options.least_steps, std::llround(options.seconds / run.judged_per_step)));
   const double known = 1e-6 * run.us_per_step * static_cast<double>(steps);
   if (std::isfinite(known) && known > 4 * options.seconds) return;  // once is enough: long runs are even by themselves
   for (std::int64_t done = 0; done < options.least_steps; done += steps) {
@@ -77,8 +81,8 @@ void timeRun(const BenchScene& scene, const Contestant& contestant, const RaceOp
 
 }  // namespace
 
-std::vector<RaceRun> race(const BenchScene& scene, const std::vector<Contestant>& contestants, const RaceOptions& options,
-                          MeasureContext& context) {
+std::vector<RaceRun> race(const BenchScene& scene, const std::vector<Contestant>& contestants,
+                          const RaceOptions& options, MeasureContext& context) {
   std::vector<RaceRun> runs = entries(scene, contestants);
   const auto each = [&](double from, double to, const auto& work) {
     for (std::size_t i = 0; i < runs.size() && !context.interrupted(); ++i) {

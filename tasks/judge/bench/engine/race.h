@@ -30,9 +30,10 @@ struct RaceRun {
   WorkPoint point() const { return {us_per_step / step.h, error}; }
 };
 
-// In the order of contestants and their ladders. Errors are judged first, then rounds of timing go over all runs by turns, so that a slow spell
-// of the machine hits all alike; reading results isn't timed. A contestant that takes no part has one failed run, with why.
-std::vector<RaceRun> race(const BenchScene& scene, const std::vector<Contestant>& contestants, const RaceOptions& options,
-                          MeasureContext& context);
+// In the order of contestants and their ladders. Errors are judged first, then rounds of timing go over all runs
+// by turns, so that a slow spell of the machine hits all alike; reading results isn't timed. A contestant that
+// takes no part has one failed run, with why.
+std::vector<RaceRun> race(const BenchScene& scene, const std::vector<Contestant>& contestants,
+                          const RaceOptions& options, MeasureContext& context);
 
 }  // namespace pincer::tasks

@@ -27,8 +27,8 @@ const char* colourOf(const std::string& engine) {
 std::string tableOfRace(const std::vector<Contestant>& contestants, const std::vector<RaceRun>& runs) {
   PlotTable table{"contestant", "name", "step_ms", "tolerance_m", "us_per_simulated_second", "error"};
   for (const RaceRun& run : runs) {
-    table.row(run.contestant, std::string_view(contestants[run.contestant].name()), 1e3 * run.step.h, run.step.tolerance,
-              run.ok() ? run.point().cost : std::nan(""), run.error);
+    table.row(run.contestant, std::string_view(contestants[run.contestant].name()), 1e3 * run.step.h,
+              run.step.tolerance, run.ok() ? run.point().cost : std::nan(""), run.error);
   }
   return table.take();
 }
@@ -42,9 +42,10 @@ std::string curves(const std::vector<Contestant>& contestants, const std::vector
     bool any = false;
     for (const RaceRun& run : runs) any = any || (run.contestant == k && run.ok());
     if (!any) continue;
-    plot += fmt::format("{}data skip 1 using ($1=={}?$5:1/0):6 with linespoints lw {} dt {} pt {} ps 1.4 lc rgb '{}' title {}",
-                        plot.empty() ? "plot " : ", ", k, contestants[k].engine == "pincer" ? 4 : 2, setting + 1, 7 - 2 * (setting % 3),
-                        colourOf(contestants[k].engine), gnuplotString(contestants[k].name()));
+    plot += fmt::format(
+        "{}data skip 1 using ($1=={}?$5:1/0):6 with linespoints lw {} dt {} pt {} ps 1.4 lc rgb '{}' title {}",
+        plot.empty() ? "plot " : ", ", k, contestants[k].engine == "pincer" ? 4 : 2, setting + 1, 7 - 2 * (setting % 3),
+        colourOf(contestants[k].engine), gnuplotString(contestants[k].name()));
   }
   return plot + "\n";
 }
@@ -55,19 +56,22 @@ void plotRace(const std::string& directory, const BenchScene& scene, const std::
               const std::vector<RaceRun>& runs) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
-  if (error) throw InputError(fmt::format("{}: can't be created: {}. Give --out a directory that may be.", directory, error.message()));
+  if (error)
+    throw InputError(
+        fmt::format("{}: can't be created: {}. Give --out a directory that may be.", directory, error.message()));
   Figure figure;
   figure.name = fileNamePart(scene.name);
   figure.width = 1400;
   figure.height = 1000;
   figure.data = {{figure.name + ".csv", tableOfRace(contestants, runs)}};
-  figure.script = figurePrelude(figure.name) +
-                  fmt::format(
-                      "set key outside right center vertical Left reverse samplen 2.5\nset logscale xy\nset format xy '%g'\n"
-                      "set title {} noenhanced textcolor rgb '{}'\nset xlabel 'processor time per simulated second [µs]'\n"
-                      "set ylabel {} noenhanced\nset grid xtics ytics\n",
-                      gnuplotString(scene.name), palette::kInk, gnuplotString(fmt::format("{} [{}]", scene.metric, scene.unit))) +
-                  curves(contestants, runs);
+  figure.script =
+      figurePrelude(figure.name) +
+      fmt::format(
+          "set key outside right center vertical Left reverse samplen 2.5\nset logscale xy\nset format xy '%g'\n"
+          "set title {} noenhanced textcolor rgb '{}'\nset xlabel 'processor time per simulated second [µs]'\n"
+          "set ylabel {} noenhanced\nset grid xtics ytics\n",
+          gnuplotString(scene.name), palette::kInk, gnuplotString(fmt::format("{} [{}]", scene.metric, scene.unit))) +
+      curves(contestants, runs);
   writeAtomically(directory + "/" + figure.name + ".csv", figure.data.front().second);
   for (const RaceRun& run : runs) {
     if (run.ok()) return writeAtomically(directory + "/" + figure.name + ".png", Gnuplot().plot(figure));

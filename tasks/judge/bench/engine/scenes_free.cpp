@@ -32,8 +32,12 @@ BenchWorld tumblingWorld(const Vec3& half, const Vec3& w) {
 }
 
 BenchScene tumblingBoxScene() {
-  BenchScene s{
-      .name = "s1/tumbling-box", .metric = "angle at 1 s, error", .unit = "rad", .floor = 1e-14, .error_bound = 1e-6, .cost_bound = 0.3};
+  BenchScene s{.name = "s1/tumbling-box",
+               .metric = "angle at 1 s, error",
+               .unit = "rad",
+               .floor = 1e-14,
+               .error_bound = 1e-6,
+               .cost_bound = 0.3};
   s.world = tumblingWorld(kBoxHalf, kBoxSpin);
   s.judge = [] {
     const Quat exact = exact::freeRotation(momentsOfBox(kBoxMass, kBoxHalf), kBoxSpin, 1);
@@ -65,7 +69,9 @@ BenchScene tumblingEnergyScene(bool whole) {
       *worst = std::max(*worst, std::abs(energy(e.motion(0)) / start - 1));
       return std::isfinite(*worst);
     };
-    judge.verdict = [=](BenchEngine&) { return *worst < 1 ? BenchVerdict{*worst} : BenchVerdict{.failure = "energy more than doubles"}; };
+    judge.verdict = [=](BenchEngine&) {
+      return *worst < 1 ? BenchVerdict{*worst} : BenchVerdict{.failure = "energy more than doubles"};
+    };
     return judge;
   };
   return s;
@@ -73,7 +79,11 @@ BenchScene tumblingEnergyScene(bool whole) {
 
 BenchScene coinScene() {
   const Vec3 half(0.02, 0.02, 0.005), spin(15, -4, 90);
-  BenchScene s{.name = "more/symmetric-top", .metric = "angle at 1 s, error", .unit = "rad", .floor = 1e-13, .error_bound = 1e-10};
+  BenchScene s{.name = "more/symmetric-top",
+               .metric = "angle at 1 s, error",
+               .unit = "rad",
+               .floor = 1e-13,
+               .error_bound = 1e-10};
   s.world = tumblingWorld(half, spin);
   s.judge = [=] {
     const Vec3 moments = momentsOfBox(kBoxMass, half);
@@ -86,8 +96,12 @@ BenchScene coinScene() {
 // A bar that swings about its end, from the horizontal.
 BenchScene pendulumScene() {
   const Vec3 half(0.1, 0.01, 0.01);
-  BenchScene s{
-      .name = "more/pendulum", .metric = "angle at 2 s, error", .unit = "rad", .duration = 2, .floor = 1e-12, .error_bound = 1e-10};
+  BenchScene s{.name = "more/pendulum",
+               .metric = "angle at 2 s, error",
+               .unit = "rad",
+               .duration = 2,
+               .floor = 1e-12,
+               .error_bound = 1e-10};
   BenchBody bar = benchBox(0.2, half, Vec3(0.1, 0, 0));
   bar.kind = BenchKind::kHinged;
   s.world.bodies = {bar};

@@ -92,8 +92,11 @@ BenchScene superballScene(bool whole) {
 // Thrown with spin: friction in each bounce turns spin into motion.
 BenchScene obliqueScene() {
   const exact::ObliqueBounces exact{0.02, 0.2, 0.8, kBenchG, 0.5, {0.5, 0.2, 0}, {0, -80, 30}};
-  BenchScene s{
-      .name = "more/oblique-bounces", .metric = "place after 3 bounces, error over way", .unit = "-", .duration = 1.6, .floor = 1e-15};
+  BenchScene s{.name = "more/oblique-bounces",
+               .metric = "place after 3 bounces, error over way",
+               .unit = "-",
+               .duration = 1.6,
+               .floor = 1e-15};
   s.world = dropWorld(0.8);
   s.world.bodies[1].v_W = exact.v0;
   s.world.bodies[1].w_W = exact.w0;

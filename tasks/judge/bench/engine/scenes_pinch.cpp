@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kPinchLimit = 0.1 * kBenchG / (2 * 2);  // the friction that just holds 100 g at 2 N [-]
 
-// How far body 0 has moved between `settled` and the end; `most` is how far it may be from its start and count as held [m].
+// How far body 0 has moved between `settled` and the end; `most` is how far it may
+// be from its start and count as held [m].
 BenchJudge judgeOfHold(double settled, double most) {
   const auto start = std::make_shared<Vec3>(Vec3::Constant(std::nan(""))), rest = std::make_shared<Vec3>(Vec3::Zero());
   BenchJudge judge;
@@ -50,7 +51,8 @@ BenchScene holdScene(const std::string& name, double mu, double seconds) {
   return s;
 }
 
-// Between steps the depth is taken as quadratic in time, with the velocity at the step's end, so that this errs less than any engine.
+// Between steps the depth is taken as quadratic in time, with the velocity at the step's
+// end, so that this errs less than any engine.
 BenchScene slipScene() {
   constexpr double kDepth = 0.005, kMu = 0.98 * kPinchLimit;
   BenchScene s{.name = "s4/slip-0.98",
@@ -83,7 +85,8 @@ BenchScene slipScene() {
       const double exact = exact::SlidingPinch{0.1, 0.02, 0.05, 0.008, 2, kMu, kBenchG}.dropTime(kDepth);
       if (std::isnan(fall->dropped)) return BenchVerdict{.failure = "sticks"};
       const double error = std::abs(fall->dropped / exact - 1);
-      return error < 0.5 ? BenchVerdict{error} : BenchVerdict{.failure = "drops in less than half or more than 1.5 times the time"};
+      return error < 0.5 ? BenchVerdict{error}
+                         : BenchVerdict{.failure = "drops in less than half or more than 1.5 times the time"};
     };
     return judge;
   };
@@ -109,7 +112,8 @@ BenchScene liftScene() {
     f.damping = {0, 0, 2};
     f.aim = [x](double t) {
       const Vec3 rise(0, 0, 0.1 * benchJerk(t - 0.2)), speed(0, 0, 0.1 * benchJerkRate(t - 0.2));
-      return BenchAim{Vec3(x, 0, 0.1) + rise, speed, Vec3(x < 0 ? 4 : -4, 0, 0.1 * kBenchG)};  // half the cube's weight each
+      // half the cube's weight each
+      return BenchAim{Vec3(x, 0, 0.1) + rise, speed, Vec3(x < 0 ? 4 : -4, 0, 0.1 * kBenchG)};
     };
     return f;
   };
@@ -123,7 +127,8 @@ BenchScene liftScene() {
     const auto path = std::make_shared<Path>();
     BenchJudge judge;
     judge.look = [=](double t, BenchEngine& e) {
-      if (path->rises.empty()) path->rises = exact::StuckLift{0.3, 500, 2, 0.1, 1, 0.2}.rises(static_cast<int>(std::lround(11 / t)), t);
+      if (path->rises.empty())
+        path->rises = exact::StuckLift{0.3, 500, 2, 0.1, 1, 0.2}.rises(static_cast<int>(std::lround(11 / t)), t);
       const double error = std::abs(e.motion(0).X_WB.p.z() - 0.1 - path->rises[path->next++]);
       path->worst = std::max(path->worst, error);
       return error < 0.03;
@@ -160,13 +165,18 @@ BenchScene flatSlideScene() {
 
 // Two fingers hold a box, two others take it, the first let go: from 2 N to 0.05 N and back.
 BenchScene handoverScene() {
-  BenchScene s{
-      .name = "more/handover", .metric = "moved from 0.4 to 3 s", .unit = "um", .duration = 3.008, .floor = 1e-10, .error_bound = 1};
+  BenchScene s{.name = "more/handover",
+               .metric = "moved from 0.4 to 3 s",
+               .unit = "um",
+               .duration = 3.008,
+               .floor = 1e-10,
+               .error_bound = 1};
   s.world.mu = 0.6;
   const auto taking = [](double t) { return 0.05 + 1.95 * benchJerk(2 * (t - 0.5)); };
   const auto leaving = [](double t) { return 2 - 1.95 * benchJerk(2 * (t - 1.5)); };
   s.world.bodies = {benchBox(0.1, {0.02, 0.02, 0.03}, {0, 0, 0.1}), benchFinger({-0.028, 0, 0.1}, 0, leaving),
-                    benchFinger({0.028, 0, 0.1}, 0, [=](double t) { return -leaving(t); }), benchFinger({0, -0.028, 0.1}, 1, taking),
+                    benchFinger({0.028, 0, 0.1}, 0, [=](double t) { return -leaving(t); }),
+                    benchFinger({0, -0.028, 0.1}, 1, taking),
                     benchFinger({0, 0.028, 0.1}, 1, [=](double t) { return -taking(t); })};
   s.judge = [] { return judgeOfHold(0.4, 0.01); };
   return s;
@@ -174,7 +184,12 @@ BenchScene handoverScene() {
 
 // MuJoCo's issue 3328: a capsule between two pads that press it with a constant force, a multiple of what holds it.
 BenchScene capsuleScene(const std::string& name, double squeeze, double seconds) {
-  BenchScene s{.name = name, .metric = "creep after 0.5 s", .unit = "um/s", .duration = seconds, .floor = 1e-12, .error_bound = 1e-6 / 60};
+  BenchScene s{.name = name,
+               .metric = "creep after 0.5 s",
+               .unit = "um/s",
+               .duration = seconds,
+               .floor = 1e-12,
+               .error_bound = 1e-6 / 60};
   const auto pad = [=](double side) {
     BenchBody body = benchBox(0.2, {0.008, 0.03, 0.02}, {0.012 * side, 0, 0.1});
     body.kind = BenchKind::kGuided;

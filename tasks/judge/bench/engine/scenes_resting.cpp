@@ -55,7 +55,9 @@ BenchScene ratioScene(const std::string& name, const std::vector<double>& masses
       }
       return columnStands(cubes, e);
     };
-    judge.verdict = [=](BenchEngine& e) { return columnStands(cubes, e) ? BenchVerdict{1e6 * *worst} : BenchVerdict{.failure = "falls"}; };
+    judge.verdict = [=](BenchEngine& e) {
+      return columnStands(cubes, e) ? BenchVerdict{1e6 * *worst} : BenchVerdict{.failure = "falls"};
+    };
     return judge;
   };
   return s;
@@ -64,7 +66,11 @@ BenchScene ratioScene(const std::string& name, const std::vector<double>& masses
 // How far any cube of ten moves after the first second.
 BenchScene columnScene() {
   constexpr int kCubes = 10;
-  BenchScene s{.name = "more/stack-of-ten", .metric = "moved from 1 to 5 s, largest", .unit = "um", .duration = 5, .floor = 1e-10};
+  BenchScene s{.name = "more/stack-of-ten",
+               .metric = "moved from 1 to 5 s, largest",
+               .unit = "um",
+               .duration = 5,
+               .floor = 1e-10};
   s.steps = {4e-3, 2e-3, 1e-3, 5e-4};
   s.world = columnWorld(std::vector<double>(kCubes, 0.1));
   s.judge = [] {
@@ -80,7 +86,8 @@ BenchScene columnScene() {
     judge.verdict = [=](BenchEngine& e) {
       if (!columnStands(kCubes, e)) return BenchVerdict{.failure = "falls"};
       double moved = 0;
-      for (int i = 1; i <= kCubes; ++i) moved = std::max(moved, (e.motion(i).X_WB.p - (*settled)[static_cast<std::size_t>(i - 1)]).norm());
+      for (int i = 1; i <= kCubes; ++i)
+        moved = std::max(moved, (e.motion(i).X_WB.p - (*settled)[static_cast<std::size_t>(i - 1)]).norm());
       return BenchVerdict{1e6 * moved};
     };
     return judge;
@@ -96,7 +103,8 @@ BenchBody wallOfCrate(const Vec3& n_W, const Vec3& p_W) {
   return wall;
 }
 
-// Uniform in +-0.5 mm: a linear congruential sequence (D. E. Knuth, The Art of Computer Programming 2, 3rd ed., 1997, 3.3.4, line 26).
+// Uniform in +-0.5 mm: a linear congruential sequence (D. E. Knuth, The Art of Computer
+// Programming 2, 3rd ed., 1997, 3.3.4, line 26).
 struct Jitter {
   std::uint64_t state = 7;
   double next() {
@@ -114,7 +122,8 @@ BenchWorld crateWorld(int marbles, int side) {
   for (int i = 0; i < marbles; ++i) {
     const int layer = i / (side * side), row = i / side % side, column = i % side;
     const double x = jitter.next(), y = jitter.next(), z = jitter.next();
-    const Vec3 p(0.001 + kSpacing * (column + 0.5) + x, 0.001 + kSpacing * (row + 0.5) + y, 0.0112 + kSpacing * layer + z);
+    const Vec3 p(0.001 + kSpacing * (column + 0.5) + x, 0.001 + kSpacing * (row + 0.5) + y,
+                 0.0112 + kSpacing * layer + z);
     world.bodies.push_back(benchBall(0.05, kMarble, p));
   }
   return world;
@@ -128,7 +137,8 @@ double overlapInCrate(int marbles, double length, BenchEngine& e) {
     p.push_back(e.motion(5 + i).X_WB.p);
     const Vec3& q = p.back();
     if (!(q.minCoeff() > 0 && q.x() < length && q.y() < length && q.z() < 2)) return std::nan("");
-    for (const double wall : {q.z(), q.x(), length - q.x(), q.y(), length - q.y()}) deepest = std::max(deepest, kMarble - wall);
+    for (const double wall : {q.z(), q.x(), length - q.x(), q.y(), length - q.y()})
+      deepest = std::max(deepest, kMarble - wall);
     for (int k = 0; k < i; ++k) deepest = std::max(deepest, 2 * kMarble - (q - p[static_cast<std::size_t>(k)]).norm());
   }
   return deepest;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kBenchSlope = 20 * kDegree;
 
-// Error over the whole way of the body 1, off `exact`; a way less than half or more than twice as long isn't the scene's motion.
+// Error over the whole way of the body 1, off `exact`; a way less than half or more
+// than twice as long isn't the scene's motion.
 BenchVerdict relativeWay(const Vec3& start, const Vec3& exact, BenchEngine& engine) {
   const Vec3 way = engine.motion(1).X_WB.p - start;
   const double share = way.dot(exact) / exact.squaredNorm();
@@ -23,15 +24,20 @@ BenchVerdict relativeWay(const Vec3& start, const Vec3& exact, BenchEngine& engi
 }
 
 BenchScene slideToRollScene() {
-  BenchScene s{
-      .name = "s2/slide-to-roll", .metric = "position at 1 s, error", .unit = "mm", .floor = 1e-12, .error_bound = 1e-3, .cost_bound = 0.8};
+  BenchScene s{.name = "s2/slide-to-roll",
+               .metric = "position at 1 s, error",
+               .unit = "mm",
+               .floor = 1e-12,
+               .error_bound = 1e-3,
+               .cost_bound = 0.8};
   s.world.mu = 0.2;
   s.world.bodies = {benchFloor(), benchBall(0.1, 0.02, {0, 0, 0.02}, {1, 0, 0})};
   s.judge = [] {
     return judgeOfEnd([](BenchEngine& e) {
       const exact::SlideToRoll exact{1, 0.2, kBenchG};
       const BenchMotion m = e.motion(1);
-      if (!(std::abs(m.v_W.x() / exact.velocity(1) - 1) < 0.05)) return BenchVerdict{.failure = "doesn't end up rolling"};
+      if (!(std::abs(m.v_W.x() / exact.velocity(1) - 1) < 0.05))
+        return BenchVerdict{.failure = "doesn't end up rolling"};
       if (!(std::abs(m.X_WB.p.z() - 0.02) < 1e-3)) return BenchVerdict{.failure = "leaves the floor"};
       return BenchVerdict{1e3 * std::abs(m.X_WB.p.x() - exact.position(1))};
     });
@@ -50,8 +56,13 @@ BenchWorld slopeWorld(double tangent_over_mu, double heading, double v0) {
 
 // How far it has crept between 1 s, when soft contacts have settled, and 10 s.
 BenchScene stickScene(const std::string& name, double heading) {
-  BenchScene s{
-      .name = name, .metric = "creep from 1 to 10 s", .unit = "um", .duration = 10, .floor = 1e-10, .error_bound = 1e-9, .cost_bound = 2};
+  BenchScene s{.name = name,
+               .metric = "creep from 1 to 10 s",
+               .unit = "um",
+               .duration = 10,
+               .floor = 1e-10,
+               .error_bound = 1e-9,
+               .cost_bound = 2};
   s.world = slopeWorld(0.99, heading, 0);
   s.judge = [] {
     const auto settled = std::make_shared<Vec3>(Vec3::Zero());
@@ -96,7 +107,9 @@ BenchScene rollingScene(const std::string& name, double friction_over_limit) {
   s.world.mu = exact.mu;
   s.world.gravity_W = kBenchG * Vec3(math::sin(kTheta), 0, -math::cos(kTheta));
   s.world.bodies = {benchFloor(), benchBall(0.1, 0.02, {0, 0, 0.02})};
-  s.judge = [=] { return judgeOfEnd([=](BenchEngine& e) { return relativeWay({0, 0, 0.02}, {0.5 * exact.acceleration(), 0, 0}, e); }); };
+  s.judge = [=] {
+    return judgeOfEnd([=](BenchEngine& e) { return relativeWay({0, 0, 0.02}, {0.5 * exact.acceleration(), 0, 0}, e); });
+  };
   return s;
 }
 
@@ -106,7 +119,9 @@ BenchScene sideSpinScene() {
   BenchScene s{.name = "more/side-spin", .metric = "place at 1 s, error over way", .unit = "-", .floor = 1e-15};
   s.world.mu = exact.mu;
   s.world.bodies = {benchFloor(), benchBall(0.1, exact.radius, {0, 0, exact.radius}, exact.v0, exact.w0)};
-  s.judge = [=] { return judgeOfEnd([=](BenchEngine& e) { return relativeWay({0, 0, exact.radius}, exact.position(1), e); }); };
+  s.judge = [=] {
+    return judgeOfEnd([=](BenchEngine& e) { return relativeWay({0, 0, exact.radius}, exact.position(1), e); });
+  };
   return s;
 }
 
@@ -120,7 +135,9 @@ BenchScene thrownCubeScene() {
                .error_bound = 1e-6};
   s.world.bodies = {benchFloor(), benchBox(0.2, {0.025, 0.025, 0.025}, {0, 0, 0.025}, {6, 0, 0})};
   s.judge = [] {
-    return judgeOfEnd([](BenchEngine& e) { return relativeWay({0, 0, 0.025}, {exact::Stopping{6, 0.5, kBenchG}.way(), 0, 0}, e); });
+    return judgeOfEnd([](BenchEngine& e) {
+      return relativeWay({0, 0, 0.025}, {exact::Stopping{6, 0.5, kBenchG}.way(), 0, 0}, e);
+    });
   };
   return s;
 }

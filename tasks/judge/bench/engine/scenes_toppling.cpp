@@ -16,7 +16,11 @@ double tiltAboutY(const Quat& q) { return 2 * math::atan2(q.y(), q.w()); }
 BenchScene tippingScene() {
   constexpr double kHalfWidth = 0.02, kHalfHeight = 0.04, kTime = 0.24;
   const double slope = math::atan(1.05 * kHalfWidth / kHalfHeight);
-  BenchScene s{.name = "more/tipping-block", .metric = "angle at 0.24 s, relative error", .unit = "-", .duration = kTime, .floor = 1e-14};
+  BenchScene s{.name = "more/tipping-block",
+               .metric = "angle at 0.24 s, relative error",
+               .unit = "-",
+               .duration = kTime,
+               .floor = 1e-14};
   s.world.mu = 1;
   s.world.gravity_W = kBenchG * Vec3(math::sin(slope), 0, -math::cos(slope));
   s.world.bodies = {benchFloor(), benchBox(0.2, {kHalfWidth, 0.03, kHalfHeight}, {0, 0, kHalfHeight})};
@@ -35,8 +39,11 @@ BenchScene tippingScene() {
 BenchScene rockingScene() {
   const exact::RockingBlock exact{0.03, 0.09, kBenchG};
   constexpr double kTilt = 0.15;
-  BenchScene s{
-      .name = "more/rocking-block", .metric = "tilt after the first impact, relative error", .unit = "-", .duration = 1.2, .floor = 1e-14};
+  BenchScene s{.name = "more/rocking-block",
+               .metric = "tilt after the first impact, relative error",
+               .unit = "-",
+               .duration = 1.2,
+               .floor = 1e-14};
   const Quat q = quatFromRotationVector({0, kTilt, 0});
   const Vec3 edge(0.03, 0, -0.09);  // that stays on the floor
   s.world.mu = 1;

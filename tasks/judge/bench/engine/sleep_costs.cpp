@@ -1,5 +1,5 @@
-// Cost of bodies at rest beside one that moves: boxes on a floor, and one that slides for ever where there is no friction. With islands that sleep and
-// without, by turns: each runs the same ticks, to the bit.
+// Cost of bodies at rest beside one that moves: boxes on a floor, and one that slides for ever where there is no
+// friction. With islands that sleep and without, by turns: each runs the same ticks, to the bit.
 #include <fmt/format.h>
 
 #include "pincer/engine/step.h"
@@ -13,7 +13,8 @@ constexpr int kComingToRest = 200, kTimedTicks = 200;
 
 class RestingBoxes {
  public:
-  RestingBoxes(int count, bool sleep) : model_(boxes(count, sleep)), state_(startOf(model_)), scratch_(engine::makeScratch(model_)) {
+  RestingBoxes(int count, bool sleep)
+      : model_(boxes(count, sleep)), state_(startOf(model_)), scratch_(engine::makeScratch(model_)) {
     run(kComingToRest);
   }
   void run(int ticks) {
@@ -29,7 +30,8 @@ class RestingBoxes {
     options.max_contacts = 4 * count + 64;
     engine::WorldBuilder builder(options);
     builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
-    for (int i = 0; i <= count; ++i) builder.addBody({fmt::format("box{}", i), contact::Box{Vec3::Constant(0.01)}, true, 0.1, {}});
+    for (int i = 0; i <= count; ++i)
+      builder.addBody({fmt::format("box{}", i), contact::Box{Vec3::Constant(0.01)}, true, 0.1, {}});
     builder.setPairMaterial(0, count + 1, {0, 0});
     return builder.build();
   }
@@ -38,7 +40,9 @@ class RestingBoxes {
     constexpr double kApart = 0.05;
     std::vector<engine::BodyStart> starts(1);
     for (int i = 0; i + 1 < static_cast<int>(model.bodies.size()); ++i)
-      starts.push_back({{Quat::Identity(), Vec3(kApart * (i % kPerRow), -kApart * (i / kPerRow), 0.01)}, Vec3::Zero(), Vec3::Zero()});
+      starts.push_back({{Quat::Identity(), Vec3(kApart * (i % kPerRow), -kApart * (i / kPerRow), 0.01)},
+                        Vec3::Zero(),
+                        Vec3::Zero()});
     starts.back().X_WB.p = Vec3(0, kApart, 0.01);
     starts.back().v_W.x() = 0.1;
     return engine::makeState(model, starts, {});

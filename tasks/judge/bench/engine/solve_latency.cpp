@@ -1,6 +1,6 @@
-// Cost of solving the contacts of one tick, by how many they are: the stage "solve" of the tick, rows and memories with it, by the steady clock.
-// Every round computes the same ticks to the bit. A tick's time is the least of its rounds: what is left of the tail then is the solver's, and what
-// else the machine did is in the tail of a single round.
+// Cost of solving the contacts of one tick, by how many they are: the stage "solve" of the tick, rows and memories with
+// it, by the steady clock. Every round computes the same ticks to the bit. A tick's time is the least of its rounds:
+// what is left of the tail then is the solver's, and what else the machine did is in the tail of a single round.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,8 @@ struct SolveTimes {
 };
 
 // One round.
-SolveTimes timeSolves(grasp::GraspModel model, grasp::GraspState state, const std::vector<Vec3>& devices, MeasureContext& context) {
+SolveTimes timeSolves(grasp::GraspModel model, grasp::GraspState state, const std::vector<Vec3>& devices,
+                      MeasureContext& context) {
   const Vec3 gravity_W = model.world.options.gravity_W;
   const grasp::ScratchHandle scratch = grasp::makeScratch(model);
   engine::StageClock clock;
@@ -38,7 +39,8 @@ SolveTimes timeSolves(grasp::GraspModel model, grasp::GraspState state, const st
     const double phase = 0.01 * k;
     for (std::size_t i = 0; i < devices.size(); ++i)
       inputs[i] = {devices[i] + 1e-3 * math::sin(phase) * Vec3::UnitZ(), 1e-2 * math::cos(phase) * Vec3::UnitZ()};
-    if (devices.empty()) model.world.options.gravity_W = gravity_W + 0.5 * Vec3(math::sin(phase), math::cos(1.7 * phase), 0);
+    if (devices.empty())
+      model.world.options.gravity_W = gravity_W + 0.5 * Vec3(math::sin(phase), math::cos(1.7 * phase), 0);
     const engine::StepReport report = grasp::step(model, state, *scratch, inputs);
     if (k < kWarmTicks) continue;
     times.us.push_back(1e6 * clock.seconds[static_cast<std::size_t>(engine::Stage::kSolve)]);
@@ -49,13 +51,14 @@ SolveTimes timeSolves(grasp::GraspModel model, grasp::GraspState state, const st
   return times;
 }
 
-SolveTimes leastOf(int rounds, const grasp::GraspModel& model, const grasp::GraspState& state, const std::vector<Vec3>& devices,
-                   MeasureContext& context) {
+SolveTimes leastOf(int rounds, const grasp::GraspModel& model, const grasp::GraspState& state,
+                   const std::vector<Vec3>& devices, MeasureContext& context) {
   SolveTimes least = timeSolves(model, state, devices, context);
   least.first_us = least.us;
   for (int round = 1; round < rounds && !context.interrupted(); ++round) {
     const SolveTimes again = timeSolves(model, state, devices, context);
-    for (std::size_t k = 0; k < std::min(least.us.size(), again.us.size()); ++k) least.us[k] = std::min(least.us[k], again.us[k]);
+    for (std::size_t k = 0; k < std::min(least.us.size(), again.us.size()); ++k)
+      least.us[k] = std::min(least.us[k], again.us[k]);
   }
   return least;
 }
@@ -95,7 +98,8 @@ SolveTimes stackedBoxes(int boxes, int rounds, MeasureContext& context) {
   return leastOf(rounds, model, grasp::makeState(model, starts, {}), {}, context);
 }
 
-void addSolveRecords(const char* what, const SolveTimes& times, double median, double p999, std::vector<Record>& records) {
+void addSolveRecords(const char* what, const SolveTimes& times, double median, double p999,
+                     std::vector<Record>& records) {
   const std::string name = fmt::format("{} ({} contacts)", what, times.contacts);
   records.push_back(atMost(name + ": median", quantileOf(times.us, 0.5), "us", median));
   records.push_back(atMost(name + ": p99.9", quantileOf(times.us, 0.999), "us", p999));

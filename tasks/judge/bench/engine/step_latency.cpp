@@ -1,4 +1,5 @@
-// S9: what single steps of a held ball cost, tail and all, in processor time of this thread: what else the machine does isn't the engine's.
+// S9: what single steps of a held ball cost, tail and all, in processor time of this thread: what
+// else the machine does isn't the engine's.
 #include <algorithm>
 #include <cmath>
 
@@ -34,7 +35,8 @@ double medianReading() {
   return quantileOf(std::move(pauses), 0.5);
 }
 
-std::vector<Record> stepLatencies(const BenchScene& scene, const std::vector<Contestant>& contestants, MeasureContext& context) {
+std::vector<Record> stepLatencies(const BenchScene& scene, const std::vector<Contestant>& contestants,
+                                  MeasureContext& context) {
   std::vector<TimedEngine> engines;
   for (const Contestant& c : contestants) {
     if (!c.ladder.empty() || !c.lacks(scene.world).empty()) continue;  // pincer's tolerance isn't for 1 kHz

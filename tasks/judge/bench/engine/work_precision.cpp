@@ -17,9 +17,12 @@ double betweenLogs(double x, double x0, double y0, double x1, double y1) {
 }  // namespace
 
 std::vector<WorkPoint> frontierOf(std::vector<WorkPoint> points) {
-  std::erase_if(points, [](const WorkPoint& p) { return !(p.cost > 0 && p.error > 0 && std::isfinite(p.cost) && std::isfinite(p.error)); });
-  std::sort(points.begin(), points.end(),
-            [](const WorkPoint& a, const WorkPoint& b) { return a.cost < b.cost || (a.cost == b.cost && a.error < b.error); });
+  std::erase_if(points, [](const WorkPoint& p) {
+    return !(p.cost > 0 && p.error > 0 && std::isfinite(p.cost) && std::isfinite(p.error));
+  });
+  std::sort(points.begin(), points.end(), [](const WorkPoint& a, const WorkPoint& b) {
+    return a.cost < b.cost || (a.cost == b.cost && a.error < b.error);
+  });
   std::vector<WorkPoint> frontier;
   for (const WorkPoint& p : points) {
     if (frontier.empty() || p.error < frontier.back().error) frontier.push_back(p);

@@ -1,11 +1,13 @@
 // work_precision: what accuracy costs, from runs of several engines at several steps.
 //
-//   frontier    of points (c, e): those with which no other is both as cheap and as accurate. c: cost, us of processor time per simulated second;
-//               e: error. Between two of its points log e is linear in log c; it isn't extrapolated
+//   frontier    of points (c, e): those with which no other is both as cheap and as accurate. c: cost,
+//               us of processor time per simulated second; e: error. Between two of its points log e
+//               is linear in log c; it isn't extrapolated
 //   e(c), c(e)  the frontier's error at a cost, and its cost at an error
 //
 // Of two frontiers, ours and theirs, at their point (c, e): the ratios e_ours(c)/e and c_ours(e)/c.
-// Source: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., 1993, II.10 (work-precision diagrams).
+// Source: E. Hairer, S. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd
+// ed., 1993, II.10 (work-precision diagrams).
 #pragma once
 #include <optional>
 #include <vector>

@@ -23,8 +23,9 @@ engine::WorldOptions benchWorld(bool gravity, bool sleep) {
   return options;
 }
 
-BenchGrasp::BenchGrasp(engine::WorldBuilder builder, const std::vector<engine::BodyStart>& bodies, std::vector<grasp::FingerModel> fingers,
-                       const std::vector<Vec3>& devices, const std::vector<grasp::FingerMethod>& methods)
+BenchGrasp::BenchGrasp(engine::WorldBuilder builder, const std::vector<engine::BodyStart>& bodies,
+                       std::vector<grasp::FingerModel> fingers, const std::vector<Vec3>& devices,
+                       const std::vector<grasp::FingerMethod>& methods)
     : inputs(fingers.size()),
       model(grasp::buildGrasp(std::move(builder), std::move(fingers))),
       state(grasp::makeState(model, bodies, devices)),
@@ -43,7 +44,8 @@ void BenchGrasp::leadAll(const std::vector<Vec3>& p_WF, int ticks) {
   std::vector<Vec3> from;
   for (const grasp::FingerInput& input : inputs) from.push_back(input.p_WF);
   for (int k = 1; k <= ticks; ++k) {
-    for (std::size_t i = 0; i < inputs.size(); ++i) leadFinger(static_cast<int>(i), from[i] + (p_WF[i] - from[i]) * k / ticks);
+    for (std::size_t i = 0; i < inputs.size(); ++i)
+      leadFinger(static_cast<int>(i), from[i] + (p_WF[i] - from[i]) * k / ticks);
     tick();
   }
 }
@@ -61,7 +63,8 @@ void BenchGrasp::watch() {
   std::vector<Vec3> on_bodies(model.world.bodies.size(), Vec3::Zero());
   for (const engine::Contact& c : world.contacts) {
     if (!c.active()) continue;
-    const double limit = c.mu * c.r[engine::kNormalRow], torsion = engine::rowsOf(c.material) > 3 ? c.r[engine::kTorsionRow] : 0;
+    const double limit = c.mu * c.r[engine::kNormalRow],
+                 torsion = engine::rowsOf(c.material) > 3 ? c.r[engine::kTorsionRow] : 0;
     if (limit > 0) cone_excess_ = std::max(cone_excess_, math::hypot(c.r.head<2>().norm(), torsion) / limit - 1);
     if (c.a.kind == engine::SideKind::kBody) on_bodies[static_cast<std::size_t>(c.a.index)] += c.impulse_W;
     on_bodies[static_cast<std::size_t>(c.b.index)] -= c.impulse_W;

@@ -16,8 +16,10 @@ grasp::FingerModel benchFinger(const char* name, double stiffness = 1000, double
 
 class BenchGrasp {
  public:
-  BenchGrasp(engine::WorldBuilder builder, const std::vector<engine::BodyStart>& bodies, std::vector<grasp::FingerModel> fingers,
-             const std::vector<Vec3>& devices, const std::vector<grasp::FingerMethod>& methods = {});  // no methods: all are ours
+  BenchGrasp(engine::WorldBuilder builder, const std::vector<engine::BodyStart>& bodies,
+             std::vector<grasp::FingerModel> fingers,
+             // no methods: all are ours
+             const std::vector<Vec3>& devices, const std::vector<grasp::FingerMethod>& methods = {});
 
   // One tick, each device where leadFinger put it.
   engine::StepReport tick();
@@ -31,12 +33,15 @@ class BenchGrasp {
   grasp::GraspState state;
   grasp::ScratchHandle scratch;
 
-  const grasp::FingerReport& felt(int finger) const { return grasp::fingersOf(*scratch)[static_cast<std::size_t>(finger)]; }
+  const grasp::FingerReport& felt(int finger) const {
+    return grasp::fingersOf(*scratch)[static_cast<std::size_t>(finger)];
+  }
   Pose body(int i) const { return engine::bodyPose(model.world, state.world, i); }
 
-  double coneExcess() const { return cone_excess_; }       // largest |f_t| / (mu f_n) - 1 of any contact in any tick [-]
-  int reactionErrors() const { return reaction_errors_; }  // ticks in which a body's impulse wasn't the fingers' negative, to the bit
-  int flagged() const { return flagged_; }                 // ticks that the step complained of
+  double coneExcess() const { return cone_excess_; }  // largest |f_t| / (mu f_n) - 1 of any contact in any tick [-]
+  // ticks in which a body's impulse wasn't the fingers' negative, to the bit
+  int reactionErrors() const { return reaction_errors_; }
+  int flagged() const { return flagged_; }  // ticks that the step complained of
 
  private:
   void watch();

@@ -1,4 +1,5 @@
-// Coupling: which stiffness with which body at which rate; energy that sampling makes, and passivity that takes it back.
+// Coupling: which stiffness with which body at which rate; energy that sampling
+// makes, and passivity that takes it back.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,10 +33,13 @@ grasp::GraspModel heldCube(double stiffness, double damping, double mass, double
   options.h = 1 / rate;
   engine::WorldBuilder builder(options);
   builder.addBody({"cube", contact::Box{Vec3::Constant(kHalfCube)}, true, mass, {0.8, 0.8, 0, 3e-3}});
-  return grasp::buildGrasp(std::move(builder), {benchFinger("left", stiffness, damping), benchFinger("right", stiffness, damping)});
+  return grasp::buildGrasp(std::move(builder),
+                           {benchFinger("left", stiffness, damping), benchFinger("right", stiffness, damping)});
 }
 
-Vec3 besideCube(int finger, double squeeze) { return {(finger == 0 ? -1 : 1) * (kHalfCube + kBenchTip - squeeze), 0, 0}; }
+Vec3 besideCube(int finger, double squeeze) {
+  return {(finger == 0 ? -1 : 1) * (kHalfCube + kBenchTip - squeeze), 0, 0};
+}
 
 // Devices that don't give way: the coupling alone, squeezed in one tick.
 std::vector<Record> stableCouplings(MeasureContext&) {
@@ -50,7 +54,8 @@ std::vector<Record> stableCouplings(MeasureContext&) {
       // One side alone at first, so that the cube is pushed off its middle and rings.
       const int ticks = static_cast<int>(1000 * std::clamp(40 * std::sqrt(m / k), 1.0, 20.0));
       for (int i = 0; i < ticks; ++i) {
-        for (int f = 0; f < 2; ++f) inputs[static_cast<std::size_t>(f)].p_WF = besideCube(f, f == 0 && i < 20 ? 1.2 * squeeze : squeeze);
+        for (int f = 0; f < 2; ++f)
+          inputs[static_cast<std::size_t>(f)].p_WF = besideCube(f, f == 0 && i < 20 ? 1.2 * squeeze : squeeze);
         grasp::step(model, state, *scratch, inputs);
       }
       speed = std::max(speed, state.world.bodies[0].v_W.norm());
@@ -61,17 +66,21 @@ std::vector<Record> stableCouplings(MeasureContext&) {
           atMost("likewise, how far from its middle, over the squeeze", place, "-", 1e-3)};
 }
 
-// Energy that came in through the fingers, the arms' friction counted with it: passive is what never lets it become negative.
+// Energy that came in through the fingers, the arms' friction counted with it:
+// passive is what never lets it become negative.
 struct Cell {
   double least = 0;       // [J]
   double least_of_1 = 0;  // within the first second [J]
   double unforeseen = 0;  // what the hands could do in one tick, largest, see unforeseenBy [J]
-  // Without passivity: what buzzes has thrown the object away before the first second is over. With it: debts of the start are made once.
-  double wholePerMinute() const { return -least * 60 / 3; }                // [J/min]
-  double laterPerMinute() const { return (least_of_1 - least) * 60 / 2; }  // in the last two of the three seconds [J/min]
+  // Without passivity: what buzzes has thrown the object away before the first second is over.
+  // With it: debts of the start are made once.
+  double wholePerMinute() const { return -least * 60 / 3; }  // [J/min]
+  // in the last two of the three seconds [J/min]
+  double laterPerMinute() const { return (least_of_1 - least) * 60 / 2; }
 };
 
-// The energy that a hand can take out within one tick beyond what its last velocity foretells: a held force f while the hand accelerates by a adds at most
+// The energy that a hand can take out within one tick beyond what its last velocity foretells: a held force f
+// while the hand accelerates by a adds at most
 // |f| |a| h^2: the velocity is that of the middle of the last tick, h before that of the coming one.
 double unforeseenBy(const HandOnArm& hand, const Vec3& f_held_W, double h) {
   const Vec3 f_hand_W = hand.hand_stiffness * (hand.wish_W - hand.p_W) - (hand.friction + hand.hand_damping) * hand.v_W;
@@ -91,7 +100,8 @@ Cell handsOn(double stiffness, double mass, double rate, bool passive) {
   for (const HandOnArm& hand : hands) options.arms.push_back({hand.mass, hand.friction});
   std::vector<grasp::FingerInput> inputs(2);
   std::vector<Vec3> p(2), f(2, Vec3::Zero());
-  for (int i = 0; i < 2; ++i) hands[static_cast<std::size_t>(i)].p_W = p[static_cast<std::size_t>(i)] = besideCube(i, 0);
+  for (int i = 0; i < 2; ++i)
+    hands[static_cast<std::size_t>(i)].p_W = p[static_cast<std::size_t>(i)] = besideCube(i, 0);
   Random random(5);
   Cell cell;
   double friction = 0;
@@ -141,13 +151,13 @@ std::vector<MapRow> stabilityMap(MeasureContext& context) {
 
 std::string mapTable(const std::vector<MapRow>& rows) {
   CsvTable table;
-  for (const char* column : {"rate_Hz", "stiffness_N_per_m", "mass_kg", "bound_N_per_m", "made_J_per_min", "made_with_passivity_J_per_min",
-                             "least_J", "least_with_passivity_J"})
+  for (const char* column : {"rate_Hz", "stiffness_N_per_m", "mass_kg", "bound_N_per_m", "made_J_per_min",
+                             "made_with_passivity_J_per_min", "least_J", "least_with_passivity_J"})
     table.add(column);
   table.endRow();
   for (const MapRow& row : rows) {
-    for (const double x : {row.rate, row.stiffness, row.mass, row.bound, row.free.wholePerMinute(), row.held.laterPerMinute(),
-                           row.free.least, row.held.least})
+    for (const double x : {row.rate, row.stiffness, row.mass, row.bound, row.free.wholePerMinute(),
+                           row.held.laterPerMinute(), row.free.least, row.held.least})
       table.add(x);
     table.endRow();
   }
@@ -159,25 +169,30 @@ void plotMap(const std::string& directory, const std::vector<MapRow>& rows) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw InputError(fmt::format("--out {}: can't make this directory: {}.", directory, error.message()));
-  constexpr std::array<const char*, 4> kColours = {palette::kBlue, palette::kGreen, palette::kOrange, palette::kVermillion};
+  constexpr std::array<const char*, 4> kColours = {palette::kBlue, palette::kGreen, palette::kOrange,
+                                                   palette::kVermillion};
   Figure figure;
   figure.name = "stability-map";
   figure.data = {{figure.name + ".csv", mapTable(rows)}};
   std::string script = figurePrelude(figure.name) +
-                       "set multiplot layout 1,3\nset logscale xy\nset format xy '1e%T'\nset datafile missing NaN\nset yrange [1e-6:1e6]\n";
+                       "set multiplot layout 1,3\nset logscale xy\nset format xy '1e%T'\nset datafile missing NaN\nset "
+                       "yrange [1e-6:1e6]\n";
   script += "set xlabel 'stiffness [N/m]'\nset ylabel 'energy made [J/min]; 1e-6: none'\n";
   for (const double rate : kRates) {
     const double bound = grasp::passiveStiffness({HandOnArm{}.mass, HandOnArm{}.friction, 0}, 0, 1 / rate);
-    script +=
-        fmt::format("set title '{:g} Hz' textcolor rgb '{}'\nset arrow 1 from {},graph 0 to {},graph 1 nohead dt 2 lc rgb '{}'\nplot ",
-                    rate, palette::kInk, bound, bound, palette::kGrey);
+    script += fmt::format(
+        "set title '{:g} Hz' textcolor rgb '{}'\nset arrow 1 from {},graph 0 to {},graph 1 nohead dt 2 lc rgb "
+        "'{}'\nplot ",
+        rate, palette::kInk, bound, bound, palette::kGrey);
     for (std::size_t i = 0; i < kMasses.size(); ++i) {
       for (const bool passive : {false, true}) {
         script += fmt::format(
-            "data skip 1 using ($1=={}&&$3=={}?$2:NaN):(${}>1e-6?${}:1e-6) with linespoints lw {} dt {} pt {} lc rgb '{}' title '{:g} "
+            "data skip 1 using ($1=={}&&$3=={}?$2:NaN):(${}>1e-6?${}:1e-6) with linespoints lw {} dt {} pt {} lc rgb "
+            "'{}' title '{:g} "
             "g{}'{}",
-            rate, kMasses[i], passive ? 6 : 5, passive ? 6 : 5, passive ? 1 : 2, passive ? 3 : 1, passive ? 6 : 7, kColours[i],
-            1e3 * kMasses[i], passive ? ", passivity" : "", i + 1 == kMasses.size() && passive ? "\n" : ", ");
+            rate, kMasses[i], passive ? 6 : 5, passive ? 6 : 5, passive ? 1 : 2, passive ? 3 : 1, passive ? 6 : 7,
+            kColours[i], 1e3 * kMasses[i], passive ? ", passivity" : "",
+            i + 1 == kMasses.size() && passive ? "\n" : ", ");
       }
     }
   }
@@ -203,14 +218,16 @@ std::vector<Record> energyMap(const GraspBenchOptions& options, MeasureContext& 
           unbounded("beyond it, passivity off: least energy that came in", 1e3 * beyond, "mJ"),
           unbounded("beyond it, passivity off: made, largest", beyond_minute, "J/min"),
           atLeast("everywhere, passivity on: least energy that came in", 1e3 * held, "mJ", -1),
-          atLeast("everywhere, passivity on: likewise, over what the hands can do unforeseen within a tick", of_unforeseen, "-", -1),
+          atLeast("everywhere, passivity on: likewise, over what the hands can do unforeseen within a tick",
+                  of_unforeseen, "-", -1),
           atMost("everywhere, passivity on: made, largest", held_minute, "J/min", 0.01)};
 }
 
 }  // namespace
 
 std::vector<Measurement> couplingMeasurements(const GraspBenchOptions& options) {
-  return {{"coupling/stable", stableCouplings}, {"coupling/energy-map", [options](MeasureContext& c) { return energyMap(options, c); }}};
+  return {{"coupling/stable", stableCouplings},
+          {"coupling/energy-map", [options](MeasureContext& c) { return energyMap(options, c); }}};
 }
 
 }  // namespace pincer::tasks

@@ -1,5 +1,5 @@
-// Cost of each feature: the same ticks with it and without it, by turns, as a ratio of their processor times. What a scene doesn't use it
-// shouldn't pay for; what it does use has its price here.
+// Cost of each feature: the same ticks with it and without it, by turns, as a ratio of their processor times. What a
+// scene doesn't use it shouldn't pay for; what it does use has its price here.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -37,7 +37,8 @@ class FeatureHand {
     std::vector<grasp::FingerModel> fingers(2, features.finger);
     fingers[1].name = "thumb";
     model_ = grasp::buildGrasp(std::move(builder), fingers);
-    state_ = grasp::makeState(model_, {engine::BodyStart{{Quat::Identity(), Vec3(0, 0, kFeatureHeight)}}, engine::BodyStart{}},
+    state_ = grasp::makeState(model_,
+                              {engine::BodyStart{{Quat::Identity(), Vec3(0, 0, kFeatureHeight)}}, engine::BodyStart{}},
                               {device(0), device(1)});
     scratch_ = grasp::makeScratch(model_);
     passivity_.on = features.passive;
@@ -147,10 +148,12 @@ Features shadedHand(contact::SurfaceVariant variant) {
 }
 
 Record treeRecord() {
-  constexpr int kAllPairs = 15, kTree = 17;  // marbles; with the floor 16 bodies are the most of which all pairs are looked at
+  // marbles; with the floor 16 bodies are the most of which all pairs are looked at
+  constexpr int kAllPairs = 15, kTree = 17;
   FeatureMarbles tree(kTree), pairs(kAllPairs);
   const double ratio = ratioOfCosts([&] { tree.run(kFeatureTicks); }, [&] { pairs.run(kFeatureTicks); });
-  return unbounded("tree of boxes, 17 marbles: a marble's share of a tick over that of 15 without it", ratio * kAllPairs / kTree, "-");
+  return unbounded("tree of boxes, 17 marbles: a marble's share of a tick over that of 15 without it",
+                   ratio * kAllPairs / kTree, "-");
 }
 
 std::vector<Record> featureCosts(MeasureContext&) {
@@ -173,7 +176,8 @@ std::vector<Record> featureCosts(MeasureContext&) {
       featureRecord(
           "shading, 20,480 triangles", [](Features& f) { f = shadedHand(contact::SurfaceVariant::smooth); },
           shadedHand(contact::SurfaceVariant::facet)),
-      featureRecord("20,480 shaded triangles for a sphere", [](Features& f) { f = shadedHand(contact::SurfaceVariant::smooth); }),
+      featureRecord("20,480 shaded triangles for a sphere",
+                    [](Features& f) { f = shadedHand(contact::SurfaceVariant::smooth); }),
       treeRecord(),
   };
 }

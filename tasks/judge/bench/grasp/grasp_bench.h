@@ -1,4 +1,5 @@
-// grasp_bench: `pincer bench grasp`: what fingers hold, feel and cost, each figure beside what pincer promises (docs/grasp.md).
+// grasp_bench: `pincer bench grasp`: what fingers hold, feel and cost, each figure
+// beside what pincer promises (docs/grasp.md).
 #pragma once
 #include <string>
 #include <vector>
@@ -15,11 +16,11 @@ struct GraspBenchOptions {
 std::vector<Measurement> graspMeasurements(const GraspBenchOptions& options);
 
 // Its parts, one source file each.
-std::vector<Measurement> holdingMeasurements();                                   // cone, reaction, slip onset, drift, handing over
-std::vector<Measurement> softFingerMeasurements();                                // limit surface, rolling
+std::vector<Measurement> holdingMeasurements();     // cone, reaction, slip onset, drift, handing over
+std::vector<Measurement> softFingerMeasurements();  // limit surface, rolling
 std::vector<Measurement> couplingMeasurements(const GraspBenchOptions& options);  // stiffness, energy, passivity
 std::vector<Measurement> graspCostMeasurements();                                 // microseconds
 std::vector<Measurement> featureCostMeasurements();                               // each feature on and off
-std::vector<Measurement> baselineMeasurements();                                  // published methods on the same scenes
+std::vector<Measurement> baselineMeasurements();  // published methods on the same scenes
 
 }  // namespace pincer::tasks

@@ -26,7 +26,8 @@ struct HeldBall {
   std::vector<grasp::FingerMethod> methods;
 };
 
-// `fingers` tips spread around a ball of 75 g over a floor, all moving a little all the time, so that no tick repeats the last one.
+// `fingers` tips spread around a ball of 75 g over a floor, all moving a little all the
+// time, so that no tick repeats the last one.
 HeldBall heldBall(int fingers, const contact::Shape& shape, grasp::FingerMethod method = grasp::FingerMethod::kProxy,
                   const std::optional<contact::FingerShape>& tip = {}) {
   engine::WorldBuilder builder(benchWorld(true));
@@ -45,7 +46,8 @@ HeldBall heldBall(int fingers, const contact::Shape& shape, grasp::FingerMethod 
     devices.push_back(Vec3(0, 0, 0.1) + (kCostBall + kBenchTip - 2e-3) * held.around.back());
   }
   held.model = grasp::buildGrasp(std::move(builder), models);
-  held.state = grasp::makeState(held.model, {engine::BodyStart{{Quat::Identity(), Vec3(0, 0, 0.1)}}, engine::BodyStart{}}, devices);
+  held.state = grasp::makeState(held.model,
+                                {engine::BodyStart{{Quat::Identity(), Vec3(0, 0, 0.1)}}, engine::BodyStart{}}, devices);
   held.inputs.resize(models.size());
   held.methods.resize(models.size(), method);
   return held;
@@ -85,7 +87,8 @@ double medianTick(HeldBall held) {
 std::vector<Record> fingersCost(MeasureContext&) {
   const contact::Shape mesh = contact::Mesh{contact::SmoothMesh::build(contact::geodesicSphere(kCostBall, 32))};
   std::vector<Record> records = {
-      atMost("two fingers on a sphere over a half-space, median", medianTick(heldBall(2, contact::Sphere{kCostBall})), "us", 0.9),
+      atMost("two fingers on a sphere over a half-space, median", medianTick(heldBall(2, contact::Sphere{kCostBall})),
+             "us", 0.9),
       atMost("two fingers on a shaded mesh of 20,480 triangles, median", medianTick(heldBall(2, mesh)), "us", 1.5)};
   double before = 0;
   for (const int n : {2, 3, 4, 6, 8, 10}) {
@@ -104,15 +107,18 @@ std::vector<Record> methodsCost(MeasureContext&) {
     contact::SurfaceOptions options;
     if (m > 0) options.variant = m == 2 ? contact::SurfaceVariant::force : contact::SurfaceVariant::facet;
     const contact::Shape mesh = contact::Mesh{contact::SmoothMesh::build(triangles, options)};
-    records.push_back(unbounded(fmt::format("{}: two fingers on 20,480 triangles, median", grasp::kFingerMethodNames[m]),
-                                medianTick(heldBall(2, mesh, static_cast<grasp::FingerMethod>(m))), "us"));
+    records.push_back(
+        unbounded(fmt::format("{}: two fingers on 20,480 triangles, median", grasp::kFingerMethodNames[m]),
+                  medianTick(heldBall(2, mesh, static_cast<grasp::FingerMethod>(m))), "us"));
   }
   return records;
 }
 
 std::vector<Record> tipsCost(MeasureContext&) {
   const contact::Shape ball = contact::Sphere{kCostBall};
-  const auto cost = [&](const contact::FingerShape& tip) { return medianTick(heldBall(2, ball, grasp::FingerMethod::kProxy, tip)); };
+  const auto cost = [&](const contact::FingerShape& tip) {
+    return medianTick(heldBall(2, ball, grasp::FingerMethod::kProxy, tip));
+  };
   return {unbounded("two spheres as general tips, median", cost(contact::Sphere{kBenchTip}), "us"),
           unbounded("two capsules, median", cost(contact::CapsuleTip{kBenchTip, Vec3(0, 0, 5e-3)}), "us"),
           unbounded("two ellipsoids, median", cost(contact::EllipsoidTip{Vec3(8e-3, 7e-3, 6e-3)}), "us")};
@@ -128,9 +134,10 @@ std::vector<Record> padsCost(MeasureContext&) {
     corners.push_back({i & 1 ? x : -x, i & 2 ? kHalf : -kHalf, i & 4 ? kHalf : -kHalf});
   }
   const contact::PadTip pad{contact::Polytope::hullOf(corners, "pad"), kRounding};
-  const double spheres = medianTick(heldBall(2, box)), pads = medianTick(heldBall(2, box, grasp::FingerMethod::kProxy, pad));
-  return {unbounded("two spheres on a box, median", spheres, "us"), unbounded("two flat pads on it, median", pads, "us"),
-          atMost("pads over spheres", pads / spheres, "-", 2.5)};
+  const double spheres = medianTick(heldBall(2, box)),
+               pads = medianTick(heldBall(2, box, grasp::FingerMethod::kProxy, pad));
+  return {unbounded("two spheres on a box, median", spheres, "us"),
+          unbounded("two flat pads on it, median", pads, "us"), atMost("pads over spheres", pads / spheres, "-", 2.5)};
 }
 
 // `n` balls 200 mm apart in rows of 32, each between two spheres; all sway, so that none sleeps.
@@ -163,7 +170,8 @@ double costPerPinch(int n) {
     grasp::step(model, state, *scratch, inputs);
   };
   const int calls = std::max(1, 300 / n);
-  return costOfCalls(lead, {.warm_up = 200, .batches = 31, .calls_per_batch = calls, .single_calls = 0}).median / (1000.0 * n);
+  return costOfCalls(lead, {.warm_up = 200, .batches = 31, .calls_per_batch = calls, .single_calls = 0}).median /
+         (1000.0 * n);
 }
 
 std::vector<Record> pinchesCost(MeasureContext&) {

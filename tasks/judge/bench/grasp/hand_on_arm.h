@@ -1,4 +1,5 @@
-// hand_on_arm: a simulated hand on a simulated arm: mass, friction, a spring to where the hand wants to be, and the force that the device holds.
+// hand_on_arm: a simulated hand on a simulated arm: mass, friction, a spring to where the hand wants to
+// be, and the force that the device holds.
 //
 //   m x'' = f_held - b x' + k_h (x_wish - x) - b_h x'     integrated finely between two ticks
 #pragma once

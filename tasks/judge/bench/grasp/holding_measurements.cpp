@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kBall = 0.02;  // radius [m]
 
-// A ball of 75 g in the air between `fingers` tips spread evenly around it at the height of its centre, each `squeeze` under its surface.
+// A ball of 75 g in the air between `fingers` tips spread evenly around it at the height of its
+// centre, each `squeeze` under its surface.
 struct RingGrasp {
   std::vector<Vec3> around;  // unit directions to the fingers
   BenchGrasp grasp;
@@ -62,15 +63,16 @@ std::vector<Record> coneAndReaction(MeasureContext& context) {
       Random random(7);
       for (int k = 0; k < 2000 && !context.interrupted(); ++k) {
         for (int i = 0; i < fingers; ++i) {
-          const Vec3 wiggle = 2e-3 * Vec3(math::sin(0.031 * k + i), math::sin(0.047 * k + 2 * i), math::sin(0.023 * k + 3 * i));
-          ring.grasp.leadFinger(
-              i, (kBall + kBenchTip - 2e-3) * ring.around[static_cast<std::size_t>(i)] + wiggle + 1e-5 * randomDirection(random));
+          const Vec3 wiggle =
+              2e-3 * Vec3(math::sin(0.031 * k + i), math::sin(0.047 * k + 2 * i), math::sin(0.023 * k + 3 * i));
+          ring.grasp.leadFinger(i, (kBall + kBenchTip - 2e-3) * ring.around[static_cast<std::size_t>(i)] + wiggle +
+                                       1e-5 * randomDirection(random));
         }
         ring.grasp.tick();
       }
       const char* what = shaded ? "mesh" : "sphere";
-      records.push_back(
-          atMost(fmt::format("{} fingers on a {}: |f_t| / (mu f_n) - 1, largest", fingers, what), ring.grasp.coneExcess(), "-", 1e-12));
+      records.push_back(atMost(fmt::format("{} fingers on a {}: |f_t| / (mu f_n) - 1, largest", fingers, what),
+                               ring.grasp.coneExcess(), "-", 1e-12));
       records.push_back(exactly(fmt::format("{} fingers on a {}: ticks in which action isn't reaction", fingers, what),
                                 ring.grasp.reactionErrors(), "-", 0));
     }
@@ -142,7 +144,8 @@ std::vector<Record> slipOnsets(MeasureContext&) {
   const auto mesh = contact::SmoothMesh::build(contact::icosphere(kBall, 3));
   const double start = kBall + kBenchTip + 1e-5;
   const auto record = [&](const char* what, const contact::Shape& shape, const Vec3& from) {
-    return atMost(fmt::format("{}: force at which it slips, over mu f_n, less 1", what), std::abs(slipOnset(shape, from) - 1), "-", 1e-6);
+    return atMost(fmt::format("{}: force at which it slips, over mu f_n, less 1", what),
+                  std::abs(slipOnset(shape, from) - 1), "-", 1e-6);
   };
   return {record("flat", contact::HalfSpace{}, Vec3(0, 0, kBenchTip + 1e-5)),
           record("sphere", contact::Sphere{kBall}, start * Vec3(0.3, -0.5, 1).normalized()),
@@ -164,8 +167,8 @@ std::vector<Record> holdsStill(MeasureContext& context) {
   return {atMost("drift in 60 s", 1e6 * drift, "um", 1e-6)};
 }
 
-// Devices with 10 um of noise, the same every second: whatever differs between the first second's mean place and a later one's is drift.
-// Soft pads: about the line between two points nothing would hold a body.
+// Devices with 10 um of noise, the same every second: whatever differs between the first second's mean place and a
+// later one's is drift. Soft pads: about the line between two points nothing would hold a body.
 struct NoisyHold {
   double drift = 0;  // [m]
   double slip = 0;   // largest offset of an anchor in any tick: the integral of a contact's slip since it stuck [m]
@@ -186,7 +189,8 @@ NoisyHold holdInNoise(const contact::Shape& shape, double twist_stiffness, Measu
   for (int s = 0; s <= kSeconds && !context.interrupted(); ++s) {
     Vec3 mean = Vec3::Zero();
     for (int k = 0; k < kSecond; ++k) {
-      for (std::size_t i = 0; i < 2; ++i) ring.grasp.leadFinger(static_cast<int>(i), places[i] + noise[static_cast<std::size_t>(k)][i]);
+      for (std::size_t i = 0; i < 2; ++i)
+        ring.grasp.leadFinger(static_cast<int>(i), places[i] + noise[static_cast<std::size_t>(k)][i]);
       ring.grasp.tick();
       mean += ring.grasp.body(0).p / kSecond;
       if (s == 0) continue;  // it settles
@@ -204,9 +208,10 @@ NoisyHold holdInNoise(const contact::Shape& shape, double twist_stiffness, Measu
   return hold;
 }
 
-// Pads that can't twist must slip about their normals: a ball that trembles turns, two normals are never quite opposite, and no turn leaves both
-// without spin. Where torsion is at its limit, so is the cone that friction shares with it, and the weight creeps down: v / w = e^2 f_t / tau.
-// The least compliance in torsion, as any fingertip has, ends that.
+// Pads that can't twist must slip about their normals: a ball that trembles turns, two normals are never
+// quite opposite, and no turn leaves both without spin. Where torsion is at its limit, so is the cone that
+// friction shares with it, and the weight creeps down: v / w = e^2 f_t / tau. The least compliance in
+// torsion, as any fingertip has, ends that.
 std::vector<Record> holdsInNoise(MeasureContext& context) {
   constexpr double kPadTwist = 0.3;  // [N m/rad]
   std::vector<Record> records;
@@ -221,7 +226,8 @@ std::vector<Record> holdsInNoise(MeasureContext& context) {
   add("a ball", contact::Sphere{kBall});
   const NoisyHold rigid = holdInNoise(contact::Sphere{kBall}, 0, context);
   records.push_back(unbounded("a ball, pads that can't twist," + noise + "drift in 59 s", 1e6 * rigid.drift, "um"));
-  records.push_back(unbounded("a ball, pads that can't twist," + noise + "ticks in which a contact slides", rigid.slides, "-"));
+  records.push_back(
+      unbounded("a ball, pads that can't twist," + noise + "ticks in which a contact slides", rigid.slides, "-"));
   return records;
 }
 

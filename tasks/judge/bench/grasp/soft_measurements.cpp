@@ -39,8 +39,10 @@ OnLimit slideAndTurn(const grasp::SoftPad& pad, double v, double w) {
     if (k < 1000) continue;  // slides by then
     const grasp::FingerReport& f = grasp.felt(0);
     const double e = grasp::torsionRadius(pad, kBenchTip, f.normal_force), limit = kSoftMu * f.normal_force;
-    worst.surface = std::max(worst.surface, std::abs(math::hypot(f.tangential_force / limit, f.torsion / (e * limit)) - 1));
-    if (v > 1e-6 && w > 1e-6) worst.flow = std::max(worst.flow, std::abs(std::abs(f.torsion) / f.tangential_force * v / (e * e * w) - 1));
+    worst.surface =
+        std::max(worst.surface, std::abs(math::hypot(f.tangential_force / limit, f.torsion / (e * limit)) - 1));
+    if (v > 1e-6 && w > 1e-6)
+      worst.flow = std::max(worst.flow, std::abs(std::abs(f.torsion) / f.tangential_force * v / (e * e * w) - 1));
   }
   return worst;
 }
@@ -100,19 +102,22 @@ Rolled rollOver(double body_radius) {
     const double a = around * t, R = body_radius + kBenchTip - kDepth;
     return {R * math::sin(a), 0, R * math::cos(a)};
   };
-  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("rolling", 1000, 0)}, {device(0) + Vec3(0, 0, kDepth)});
+  BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("rolling", 1000, 0)},
+                   {device(0) + Vec3(0, 0, kDepth)});
   grasp.leadAll({device(0)}, 100);
   grasp.leadAll({device(0)}, 200);
   Rolled worst;
   for (int k = 1; k <= 600; ++k) {
     // Eased in over 0.2 s: a jump of the speed would be felt.
-    const double s = std::min(1.0, k / 200.0), t = kGraspTick * (k <= 200 ? 200 * (s * s * s - 0.5 * s * s * s * s) : k - 100);
+    const double s = std::min(1.0, k / 200.0),
+                 t = kGraspTick * (k <= 200 ? 200 * (s * s * s - 0.5 * s * s * s * s) : k - 100);
     grasp.leadFinger(0, device(t));
     grasp.inputs[0].q_WF = quatFromRotationVector({0, kSpin * t, 0});
     grasp.tick();
     if (k < 400) continue;
     const grasp::FingerReport& f = grasp.felt(0);
-    worst.speed = std::max(worst.speed, std::abs(grasp::placeRateOnPad(grasp.model.fingers[0], f, kGraspTick).norm() / exact - 1));
+    worst.speed = std::max(worst.speed,
+                           std::abs(grasp::placeRateOnPad(grasp.model.fingers[0], f, kGraspTick).norm() / exact - 1));
     worst.share = std::max(worst.share, f.tangential_force / f.normal_force);
   }
   return worst;
@@ -121,7 +126,8 @@ Rolled rollOver(double body_radius) {
 std::vector<Record> rolling(MeasureContext&) {
   const Rolled plane = rollOver(0), ball = rollOver(0.02);
   return {atMost("on a plane: speed of the contact over the pad, off Montana's, relative", plane.speed, "-", 1e-6),
-          atMost("on a ball: likewise", ball.speed, "-", 1e-6), atMost("on a plane: tangential over normal force", plane.share, "-", 1e-3),
+          atMost("on a ball: likewise", ball.speed, "-", 1e-6),
+          atMost("on a plane: tangential over normal force", plane.share, "-", 1e-3),
           unbounded("on a ball: tangential over normal force (the spring leads the proxy)", ball.share, "-")};
 }
 

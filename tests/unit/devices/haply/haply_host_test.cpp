@@ -1,4 +1,5 @@
-// The driver against the emulated service over real sockets: forces come when asked for, and end whatever happens on the wire.
+// The driver against the emulated service over real sockets: forces come when asked
+// for, and end whatever happens on the wire.
 #include "pincer/devices/haply/haply_host.h"
 
 #include <gtest/gtest.h>
@@ -61,8 +62,8 @@ void armBoth(HaplyHost& host) {
 TEST(HaplyPort, TakesPlacesOnThisComputerOnly) {
   EXPECT_EQ(servicePlaceOf("127.0.0.1:10001")->port, 10001);
   EXPECT_EQ(servicePlaceOf("localhost:5:7")->events_port, 7);
-  for (const char* text :
-       {"", "10001", "192.168.0.3:10001", "localhost:", "localhost:0", "localhost:70000", "localhost:1:", "localhost:1x"})
+  for (const char* text : {"", "10001", "192.168.0.3:10001", "localhost:", "localhost:0", "localhost:70000",
+                           "localhost:1:", "localhost:1x"})
     EXPECT_FALSE(servicePlaceOf(text)) << text;
 }
 
@@ -76,7 +77,8 @@ TEST(HaplyHost, MovesAndPushesTwoArms) {
   const double age = 1e-9 * static_cast<double>(usb::monotonicNs()) - sample.time;
   EXPECT_GT(age, 0);
   armBoth(host);
-  EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99 && server.force(1) > 0.99; })) << host.complaint();
+  EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99 && server.force(1) > 0.99; }))
+      << host.complaint();
   server.with([](emulate::HaplyService& service) {
     EXPECT_LT((service.plant(0).force_D() - Vec3(0, 0, 1)).norm(), 1e-5) << "in the arm's own frame";
   });
@@ -127,19 +129,22 @@ TEST(HaplyHost, EveryFaultOfTheWireEndsInZeroOrIsHarmless) {
     host.waitReady(10);
     server.setFault(fault);
     armBoth(host);
-    EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99; })) << nameOf(fault) << host.complaint();
+    EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99; }))
+        << nameOf(fault) << host.complaint();
   }
   for (const HaplyFault fault :
-       {HaplyFault::kNoUtf8, HaplyFault::kTooLong, HaplyFault::kHugeHeader, HaplyFault::kReset, HaplyFault::kHalfOpen, HaplyFault::kLate,
-        HaplyFault::kNever, HaplyFault::kEventsClosed, HaplyFault::kStall}) {
+       {HaplyFault::kNoUtf8, HaplyFault::kTooLong, HaplyFault::kHugeHeader, HaplyFault::kReset, HaplyFault::kHalfOpen,
+        HaplyFault::kLate, HaplyFault::kNever, HaplyFault::kEventsClosed, HaplyFault::kStall}) {
     HaplyServer server;
     server.setDelay(std::chrono::milliseconds(500));
     HaplyHost host(bothArmsAt(server));
     host.waitReady(10);
     armBoth(host);
-    ASSERT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99; })) << nameOf(fault) << host.complaint();
+    ASSERT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99; }))
+        << nameOf(fault) << host.complaint();
     server.setFault(fault);
-    EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return !host.arm(0).sample().valid && server.force(0) == 0; })) << nameOf(fault);
+    EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return !host.arm(0).sample().valid && server.force(0) == 0; }))
+        << nameOf(fault);
     EXPECT_GT(host.complaint().size(), 40u) << nameOf(fault);
   }
 }
@@ -155,7 +160,8 @@ TEST(HaplyHost, StreamsAgainAfterALossOnlyOnceUnarmed) {
   std::this_thread::sleep_for(std::chrono::milliseconds(600));
   EXPECT_EQ(host.arm(0).state(), DeviceState::kFaulted) << "armed: somebody may be in it";
   for (std::size_t i = 0; i < 2; ++i) host.arm(i).stop();
-  ASSERT_TRUE(comesTrue([&] { return host.arm(0).state() == DeviceState::kReady && host.arm(1).state() == DeviceState::kReady; }));
+  ASSERT_TRUE(comesTrue(
+      [&] { return host.arm(0).state() == DeviceState::kReady && host.arm(1).state() == DeviceState::kReady; }));
   EXPECT_TRUE(host.arm(0).sample().valid);
   armBoth(host);
   EXPECT_TRUE(pushUntil(host, Vec3(0, 0, 1), [&] { return server.force(0) > 0.99; })) << host.complaint();
@@ -223,7 +229,8 @@ TEST(HaplySilence, TellsWhenAnArmLetsGo) {
   EXPECT_TRUE(finding(emulate::DeadMan::kZeroOnClose, Ending::kClose).went_idle);
 }
 
-// Nor is it documented that a second session may look at an arm that is in use: then it can't be measured, and the push ends at once.
+// Nor is it documented that a second session may look at an arm that is in use: then it
+// can't be measured, and the push ends at once.
 TEST(HaplySilence, EndsWhereASecondSessionIsToldNothing) {
   HaplyServiceSettings settings;
   settings.tells_others = false;

@@ -55,17 +55,20 @@ TEST(HaplyMessages, ReadTheDocumentedInventory) {
 TEST(HaplyMessages, WriteTheDocumentedCommands) {
   std::array<char, kMostCommand> buffer{};
   const ForceCommand first{.id = *Label::of("049D"), .configure = true};
-  EXPECT_EQ(writeForces(buffer, std::span(&first, 1), ForceSpelling::kVector, "org.pincer:5f3a09c1", true), tests::kHaplyFirstMessage);
+  EXPECT_EQ(writeForces(buffer, std::span(&first, 1), ForceSpelling::kVector, "org.pincer:5f3a09c1", true),
+            tests::kHaplyFirstMessage);
   const std::array both{commandOf("049D", {0, 0, 1.5}), commandOf("04BA", {-0.2, 0, 0})};
   EXPECT_EQ(writeForces(buffer, both, ForceSpelling::kVector), tests::kHaplyForces);
   EXPECT_NE(writeForces(buffer, both, ForceSpelling::kValues).find(R"("values":{"x":0.0)"), std::string_view::npos);
-  EXPECT_EQ(writeForces(buffer, both, ForceSpelling::kValues).find("vector"), std::string_view::npos) << "forces of both would add";
+  EXPECT_EQ(writeForces(buffer, both, ForceSpelling::kValues).find("vector"), std::string_view::npos)
+      << "forces of both would add";
 }
 
 TEST(HaplyMessages, OfLongIdsAndStrangeForcesFitAndAreSound) {
   std::array<char, kMostCommand> buffer{};
   const std::string long_id(31, 'X');
-  ForceCommand worst{.id = *Label::of(long_id), .f_H = Vec3(-99.999999, 1e300, NAN), .configure = true, .gate_gain = 0.123456};
+  ForceCommand worst{
+      .id = *Label::of(long_id), .f_H = Vec3(-99.999999, 1e300, NAN), .configure = true, .gate_gain = 0.123456};
   const std::array both{worst, worst};
   const auto text = writeForces(buffer, both, ForceSpelling::kVector, long_id, true);
   const auto tree = nlohmann::json::parse(text);
@@ -77,18 +80,25 @@ TEST(HaplyMessages, OfLongIdsAndStrangeForcesFitAndAreSound) {
 
 TEST(HaplyMessages, ThatAreUnsoundAreRefusedByName) {
   const std::string place = R"("cursor_position":{"x":0.0,"y":-0.12,"z":0.15})";
-  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":0.0,"y":-0.12})")), ReadError::kMissingComponent);
-  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":0.0,"y":"-0.12","z":0.15})")), ReadError::kWrongType);
-  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":0.0,"y":-0.12,"z":null})")), ReadError::kWrongType);
+  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":0.0,"y":-0.12})")),
+            ReadError::kMissingComponent);
+  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":0.0,"y":"-0.12","z":0.15})")),
+            ReadError::kWrongType);
+  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":0.0,"y":-0.12,"z":null})")),
+            ReadError::kWrongType);
   EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":[0,0,0])")), ReadError::kWrongType);
   EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":5)")), ReadError::kWrongType);
-  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":0.0,"x":0.0,"y":-0.12,"z":0.15})")), ReadError::kTwice);
-  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":2.01,"y":-0.12,"z":0.15})")), ReadError::kOutOfRange);
+  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":0.0,"x":0.0,"y":-0.12,"z":0.15})")),
+            ReadError::kTwice);
+  EXPECT_EQ(errorIn(with(kHaplyInventory, place, R"("cursor_position":{"x":2.01,"y":-0.12,"z":0.15})")),
+            ReadError::kOutOfRange);
   for (const char* number : {"NaN", "Infinity", "1e999", "-1e999", "01", "0x1", "+1"}) {
     EXPECT_EQ(errorIn(with(kHaplyInventory, "-0.12", number)), ReadError::kNotJson) << number;
   }
-  EXPECT_EQ(errorIn(with(kHaplyInventory, R"("cursor_velocity":{"x":0)", R"("cursor_velocity":{"x":20.1)")), ReadError::kOutOfRange);
-  EXPECT_EQ(errorIn(with(kHaplyInventory, R"("orientation":{"w":1)", R"("orientation":{"w":0.98)")), ReadError::kOutOfRange);
+  EXPECT_EQ(errorIn(with(kHaplyInventory, R"("cursor_velocity":{"x":0)", R"("cursor_velocity":{"x":20.1)")),
+            ReadError::kOutOfRange);
+  EXPECT_EQ(errorIn(with(kHaplyInventory, R"("orientation":{"w":1)", R"("orientation":{"w":0.98)")),
+            ReadError::kOutOfRange);
   EXPECT_EQ(errorIn(with(kHaplyInventory, "1605", "049D")), ReadError::kTwice) << "an id of two devices";
   EXPECT_EQ(errorIn(with(kHaplyInventory, R"("verse_grip":[])", R"("inverse3":[])")), ReadError::kTwice);
   EXPECT_EQ(errorIn(with(kHaplyInventory, R"("device_id":"049D",)", "")), ReadError::kNoId);
@@ -100,7 +110,8 @@ TEST(HaplyMessages, ThatAreUnsoundAreRefusedByName) {
   EXPECT_EQ(errorIn(R"({"inverse3":[[{}]]})"), ReadError::kWrongType);
   EXPECT_EQ(errorIn(R"({"inverse3":[5]})"), ReadError::kWrongType);
   EXPECT_EQ(errorIn(R"({"ok":true})"), ReadError::kNotJson) << "no state at all";
-  EXPECT_EQ(errorIn(R"({"inverse3":[{"device_id":"1","a":{"a":{"a":{"a":{"a":{"a":{}}}}}}}]})"), ReadError::kNotJson) << "too deep";
+  EXPECT_EQ(errorIn(R"({"inverse3":[{"device_id":"1","a":{"a":{"a":{"a":{"a":{"a":{}}}}}}}]})"), ReadError::kNotJson)
+      << "too deep";
   EXPECT_EQ(errorIn(std::string(kMostMessage + 1, ' ')), ReadError::kTooLong);
   std::string many = R"({"inverse3":[{"device_id":"0"})";
   for (int i = 1; i <= 16; ++i) many += R"(,{"device_id":")" + std::to_string(i) + "\"}";
@@ -113,25 +124,31 @@ TEST(HaplyMessages, LeaveUnknownKeysAloneAndTellAbsentFromZero) {
                         R"("state.cursor_position.x":9,"":{"x":1}},"status":{}}],"other":null})",
                         message),
             ReadError::kNone);
-  EXPECT_FALSE(message.devices[0].p_H || message.devices[0].v_H || message.devices[0].calibrated || message.devices[0].config);
+  EXPECT_FALSE(message.devices[0].p_H || message.devices[0].v_H || message.devices[0].calibrated ||
+               message.devices[0].config);
 }
 
 TEST(HaplyMessages, KnowAMountAndATransformThatAreNotTheIdentity) {
   ServiceMessage message;
-  ASSERT_EQ(readService(with(kHaplyInventory, R"("transform":{})", R"("transform":{"scale":{"x":1,"y":1,"z":2}})"), message),
-            ReadError::kNone);
+  ASSERT_EQ(
+      readService(with(kHaplyInventory, R"("transform":{})", R"("transform":{"scale":{"x":1,"y":1,"z":2}})"), message),
+      ReadError::kNone);
   EXPECT_TRUE(message.devices[0].transformed);
-  ASSERT_EQ(readService(with(kHaplyInventory, R"("transform":{})", R"("transform":{"rotation":{"w":1,"x":0,"y":0,"z":0}})"), message),
-            ReadError::kNone);
+  ASSERT_EQ(
+      readService(with(kHaplyInventory, R"("transform":{})", R"("transform":{"rotation":{"w":1,"x":0,"y":0,"z":0}})"),
+                  message),
+      ReadError::kNone);
   EXPECT_FALSE(message.devices[0].transformed);
-  ASSERT_EQ(readService(with(kHaplyInventory, R"("mount":{"position":{"x":0)", R"("mount":{"position":{"x":0.1)"), message),
-            ReadError::kNone);
+  ASSERT_EQ(
+      readService(with(kHaplyInventory, R"("mount":{"position":{"x":0)", R"("mount":{"position":{"x":0.1)"), message),
+      ReadError::kNone);
   EXPECT_TRUE(message.devices[0].config->mounted);
 }
 
 TEST(HaplyMessages, TakeAGripOfFourZerosAsOneWithoutOrientation) {
   ServiceMessage message;
-  ASSERT_EQ(readService(with(kHaplyInventory, R"("orientation":{"w":1)", R"("orientation":{"w":0)"), message), ReadError::kNone);
+  ASSERT_EQ(readService(with(kHaplyInventory, R"("orientation":{"w":1)", R"("orientation":{"w":0)"), message),
+            ReadError::kNone);
   EXPECT_FALSE(message.find("1605")->q_H);
 }
 
@@ -151,13 +168,14 @@ TEST(HaplyEvents, AreRead) {
 }
 
 TEST(HaplyHttp, AnswersAreTakenBareAndInData) {
-  for (const char* body : {R"("3.5.1")", "3.5.1\n", R"({"ok":true,"data":"3.5.1"})", R"({"ok":true,"data":{"version":"v3.5.1","ok":1}})",
-                           R"({"version":"3.5.1"})"}) {
+  for (const char* body : {R"("3.5.1")", "3.5.1\n", R"({"ok":true,"data":"3.5.1"})",
+                           R"({"ok":true,"data":{"version":"v3.5.1","ok":1}})", R"({"version":"3.5.1"})"}) {
     const auto version = readVersion(body);
     ASSERT_TRUE(version) << body;
     EXPECT_TRUE(version->major == 3 && version->minor == 5) << body;
   }
-  for (const char* body : {"", "{}", R"({"ok":false,"error":"3.5"})", R"({"ok":false,"data":"3.5"})", "<html>", "99999999999.5"}) {
+  for (const char* body :
+       {"", "{}", R"({"ok":false,"error":"3.5"})", R"({"ok":false,"data":"3.5"})", "<html>", "99999999999.5"}) {
     EXPECT_FALSE(readVersion(body)) << body;
   }
   EXPECT_EQ(readNumber("1"), 1.0);
@@ -168,8 +186,8 @@ TEST(HaplyHttp, AnswersAreTakenBareAndInData) {
 }
 
 TEST(HaplyHttp, TellsTheDevicesThatAreThere) {
-  const DeviceIds ids =
-      readDeviceIds(R"({"ok":true,"data":[{"device_id":"049D","type":"inverse3"},{"device_id":5},{"device_id":"1605"}]})");
+  const DeviceIds ids = readDeviceIds(
+      R"({"ok":true,"data":[{"device_id":"049D","type":"inverse3"},{"device_id":5},{"device_id":"1605"}]})");
   ASSERT_EQ(ids.count, 2u);
   EXPECT_EQ(ids.ids[1].view(), "1605");
   EXPECT_EQ(readDeviceIds("[").count, 0u);
@@ -186,7 +204,8 @@ RC_GTEST_PROP(HaplyMessages, OfMutatedBytesAreRefusedOrSound, ()) {
         text[at] = *rc::gen::arbitrary<char>();
         break;
       case 1:
-        text.insert(at, *rc::gen::elementOf(std::vector<std::string>{"{", "}", "[", "]", "\"", ",", "9", "e9", "null", ":1,"}));
+        text.insert(
+            at, *rc::gen::elementOf(std::vector<std::string>{"{", "}", "[", "]", "\"", ",", "9", "e9", "null", ":1,"}));
         break;
       default:
         text.erase(at, *rc::gen::inRange<std::size_t>(1, 40));

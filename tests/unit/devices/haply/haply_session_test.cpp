@@ -70,7 +70,8 @@ class Wire {
       to_session_.pop_front();
     }
     for (const std::string& event : service.takeEvents()) session.heard(event, now);
-    for (auto text = session.next(now); !text.empty(); text = session.next(now)) to_service_.emplace_back(now + kLatency, text);
+    for (auto text = session.next(now); !text.empty(); text = session.next(now))
+      to_service_.emplace_back(now + kLatency, text);
   }
 
   int number_ = 0;
@@ -154,7 +155,8 @@ TEST(HaplySession, TakesStatesThatAreFreshAndStatesThatAreOneMessageOld) {
   }
 }
 
-// Each in the midst of an armed session that pushes: zero for good, within what it takes to see it, or a harmless fault.
+// Each in the midst of an armed session that pushes: zero for good, within what
+// it takes to see it, or a harmless fault.
 TEST(HaplySession, EveryFaultWhilePushingEndsInZeroOrIsHarmless) {
   const auto harmless = [](HaplyFault fault) {
     return fault == HaplyFault::kUnknownKey || fault == HaplyFault::kGripAsleep || fault == HaplyFault::kGripZero ||
@@ -276,14 +278,16 @@ TEST(HaplySession, RefusesSettingsThatStayOdd) {
   EXPECT_NE(wire.session.complaint().find("preset"), std::string::npos) << wire.session.complaint();
 }
 
-// No page shows how a preset or a damping is set over the WebSocket: a service that takes ours is configured, one that doesn't is refused.
+// No page shows how a preset or a damping is set over the WebSocket: a service that takes ours is
+// configured, one that doesn't is refused.
 TEST(HaplySession, ConfiguresAServiceOrRefusesIt) {
   for (const bool takes : {true, false}) {
     for (const HaplyServiceSettings& odd : {HaplyServiceSettings{.preset = "led_front", .takes_configuration = takes},
                                             HaplyServiceSettings{.damping = 0.7, .takes_configuration = takes}}) {
       Wire wire(twoArms(), odd);
       wire.run(1.2);
-      EXPECT_EQ(wire.session.phase(), takes ? SessionPhase::kReady : SessionPhase::kRefused) << wire.session.complaint();
+      EXPECT_EQ(wire.session.phase(), takes ? SessionPhase::kReady : SessionPhase::kRefused)
+          << wire.session.complaint();
       const char* const named = odd.damping > 0 ? "damping" : "preset";
       EXPECT_EQ(wire.session.complaint().find(named) != std::string::npos, !takes) << wire.session.complaint();
       EXPECT_EQ(wire.force(), 0);
@@ -392,7 +396,8 @@ TEST(HaplySession, DoubtsALostEventChannelAfterASecond) {
   EXPECT_TRUE(wire.session.doubted());
 }
 
-// A force that ended while the service was away for 40 ms looked like one that nobody had asked for; an echo that was late, like none.
+// A force that ended while the service was away for 40 ms looked like one that nobody had
+// asked for; an echo that was late, like none.
 TEST(HaplySession, DoesNotTakeALateServiceForAWildOne) {
   Wire wire;
   wire.run(0.6);

@@ -1,4 +1,5 @@
-// haply_texts: messages of Haply's service as its pages and the sources of its known clients give them; fixed test data.
+// haply_texts: messages of Haply's service as its pages and the sources of its
+// known clients give them; fixed test data.
 #pragma once
 #include <string>
 

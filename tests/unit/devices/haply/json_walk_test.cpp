@@ -83,19 +83,21 @@ bool isBeyondTheWalk(const std::string& text) {
 }
 
 TEST(JsonWalk, TellsTheValuesThatAnotherLibraryFinds) {
-  for (const std::string& text :
-       {tests::kHaplyInventory, tests::kHaplySafetyEvent, tests::kHaplyForces,
-        std::string(R"(  [1,[-0.0,{"b":true,"":null,"x.y":[[],{},"z"]}]] )"),
-        std::string(
-            R"({"a":"\"\\\/\b\f\n\r\t\u00e9\ud83d\ude00","b":[5e-324,1.7976931348623157e308,18446744073709551615,-9223372036854775808]})"),
-        std::string("7"), std::string("\"x\""), std::string("[[[[[[[[1]]]]]]]]")}) {
+  for (
+      const std::string& text :
+      {tests::kHaplyInventory, tests::kHaplySafetyEvent, tests::kHaplyForces,
+       std::string(R"(  [1,[-0.0,{"b":true,"":null,"x.y":[[],{},"z"]}]] )"),
+       std::string(
+           R"({"a":"\"\\\/\b\f\n\r\t\u00e9\ud83d\ude00","b":[5e-324,1.7976931348623157e308,18446744073709551615,-9223372036854775808]})"),
+       std::string("7"), std::string("\"x\""), std::string("[[[[[[[[1]]]]]]]]")}) {
     Keeper keeper;
     EXPECT_TRUE(walkJson(text, keeper)) << text;
     EXPECT_EQ(keeper.opened, 0);
     std::vector<Told> wanted;
     flatten(ordered_json::parse(text), "", wanted);
     ASSERT_EQ(keeper.told.size(), wanted.size()) << text;
-    for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_EQ(keeper.told[i], wanted[i]) << wanted[i].path << " of " << text;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      EXPECT_EQ(keeper.told[i], wanted[i]) << wanted[i].path << " of " << text;
   }
 }
 
@@ -112,7 +114,8 @@ TEST(JsonWalk, ReadsNumbersToTheLastBit) {
 
 TEST(JsonWalk, TakesMutatedTextsThatAnotherLibraryTakesAndNoOthers) {
   std::mt19937_64 random(40);
-  const std::array<std::string, 3> seeds{tests::kHaplySafetyEvent, R"({"a":[1,-2.5e3,{"b":true,"":null,"x.y":[[],{}]}],"c":"é\u00e9\n"})",
+  const std::array<std::string, 3> seeds{tests::kHaplySafetyEvent,
+                                         R"({"a":[1,-2.5e3,{"b":true,"":null,"x.y":[[],{}]}],"c":"é\u00e9\n"})",
                                          "[[[[[[[[1]]]]]]]]"};
   int sound = 0, refused = 0;
   for (std::size_t i = 0; i < 30'000; ++i) {

@@ -1,4 +1,5 @@
-// WEART's TouchDIVER over the emulated Middleware: texts as its SDK has them; pressure comes, and ends whatever happens.
+// WEART's TouchDIVER over the emulated Middleware: texts as its SDK has them;
+// pressure comes, and ends whatever happens.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -41,22 +42,24 @@ bool pressUntil(WeartHost& host, double force, const std::function<bool()>& cond
 
 TEST(WeartMessages, AreThoseOfTheSdk) {
   TextBuffer buffer;
-  EXPECT_EQ(writeForce(buffer, 0.35, HandSide::kRight, Thimble::kIndex), "force:0.350000:0.000000:0.000000:RIGHT:INDEX~");
+  EXPECT_EQ(writeForce(buffer, 0.35, HandSide::kRight, Thimble::kIndex),
+            "force:0.350000:0.000000:0.000000:RIGHT:INDEX~");
   EXPECT_EQ(writeStopForce(buffer, HandSide::kRight, Thimble::kIndex), "stopForce:RIGHT:INDEX~");
   EXPECT_EQ(writeForce(buffer, 7, HandSide::kLeft, Thimble::kMiddle), "force:1.000000:0.000000:0.000000:LEFT:MIDDLE~");
   for (const double none : {-1.0, 0.0, std::nan(""), -HUGE_VAL})
-    EXPECT_EQ(writeForce(buffer, none, HandSide::kLeft, Thimble::kThumb), "force:0.000000:0.000000:0.000000:LEFT:THUMB~");
+    EXPECT_EQ(writeForce(buffer, none, HandSide::kLeft, Thimble::kThumb),
+              "force:0.000000:0.000000:0.000000:LEFT:THUMB~");
 }
 
 TEST(WeartMessages, TellOfTheMiddlewareOnlyByItsStatus) {
-  const auto status =
-      readStatus(R"({"type":"MW_STATUS","ts":1,"data":{"status":"RUNNING","actuationsEnabled":false,"connectedDevices":[]}})");
+  const auto status = readStatus(
+      R"({"type":"MW_STATUS","ts":1,"data":{"status":"RUNNING","actuationsEnabled":false,"connectedDevices":[]}})");
   ASSERT_TRUE(status);
   EXPECT_TRUE(status->running);
   EXPECT_FALSE(status->actuates);
   EXPECT_FALSE(readStatus(R"({"type":"MW_STATUS","ts":1,"data":{"status":"IDLE"}})")->running);
-  for (const char* other :
-       {"", "Tracking:1:2", R"({"type":"DEVICES_STATUS","data":{"status":"RUNNING"}})", R"({"type":"MW_STATUS")", "[]", "\xff"})
+  for (const char* other : {"", "Tracking:1:2", R"({"type":"DEVICES_STATUS","data":{"status":"RUNNING"}})",
+                            R"({"type":"MW_STATUS")", "[]", "\xff"})
     EXPECT_FALSE(readStatus(other)) << other;
 }
 
@@ -106,8 +109,9 @@ TEST(WeartHost, PressesNothingOnceTheMiddlewareStopsAndNeverAgain) {
     WeartHost host(handAt(middleware));
     ASSERT_TRUE(pressUntil(host, 2.5, [&] { return middleware.level("RIGHT:INDEX") == 0.5; }));
     middleware.setFault(fault);
-    EXPECT_TRUE(pressUntil(host, 2.5, [&] { return middleware.level("RIGHT:INDEX") == 0 && !host.complaint().empty(); }))
-        << static_cast<int>(fault);
+    EXPECT_TRUE(pressUntil(host, 2.5, [&] {
+      return middleware.level("RIGHT:INDEX") == 0 && !host.complaint().empty();
+    })) << static_cast<int>(fault);
     EXPECT_EQ(host.display(0).state(), DeviceState::kFaulted);
     middleware.setFault(WeartFault::kNone);
     const std::int64_t commands = middleware.commands();

@@ -66,16 +66,17 @@ TEST(CommandLine, HelpsEverywhereWithAnExample) {
 }
 
 TEST(CommandLine, ComplainsAboutUsageInOneLine) {
-  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{{},
-                                                                                         {"simulate"},
-                                                                                         {"sim"},
-                                                                                         {"run", "sphere-dropping"},
-                                                                                         {"run"},
-                                                                                         {"sim", "s.json", "--durations", "1"},
-                                                                                         {"sim", "s.json", "--duration", "-1"},
-                                                                                         {"mesh", "info", "x.obj"},
-                                                                                         {"mesh", "info", "x.obj", "--units", "furlong"},
-                                                                                         {"plan", "s.json", "--ticks", "many"}}) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{},
+                                             {"simulate"},
+                                             {"sim"},
+                                             {"run", "sphere-dropping"},
+                                             {"run"},
+                                             {"sim", "s.json", "--durations", "1"},
+                                             {"sim", "s.json", "--duration", "-1"},
+                                             {"mesh", "info", "x.obj"},
+                                             {"mesh", "info", "x.obj", "--units", "furlong"},
+                                             {"plan", "s.json", "--ticks", "many"}}) {
     const AppResult wrong = runPincer(arguments);
     EXPECT_EQ(wrong.exit_code, kExitUsage);
     EXPECT_EQ(wrong.out, "");
@@ -85,7 +86,8 @@ TEST(CommandLine, ComplainsAboutUsageInOneLine) {
 }
 
 TEST(CommandLine, KnowsWhichCommandWasMeant) {
-  const AppResult top = runPincer({"smi", "s4_pinch"}), below = runPincer({"mesh", "cheek", "part.obj"}), far = runPincer({"xyzzy"});
+  const AppResult top = runPincer({"smi", "s4_pinch"}), below = runPincer({"mesh", "cheek", "part.obj"}),
+                  far = runPincer({"xyzzy"});
   EXPECT_EQ(top.exit_code, kExitUsage);
   EXPECT_TRUE(contains(top.error, "\"smi\" isn't a command of pincer. Did you mean \"sim\"?")) << top.error;
   EXPECT_TRUE(contains(below.error, "Did you mean \"check\"? See `pincer mesh --help`")) << below.error;
@@ -115,7 +117,8 @@ TEST(ManualCommand, HasAPageForEveryCommandOfHelp) {
       const std::size_t at = line.find("--");
       if (line.rfind("  -", 0) != 0 || at == line.npos) continue;
       std::string option;
-      for (const char c : line.substr(at, line.find_first_of(" {", at) - at)) option += c == '-' ? "\\-" : std::string(1, c);
+      for (const char c : line.substr(at, line.find_first_of(" {", at) - at))
+        option += c == '-' ? "\\-" : std::string(1, c);
       EXPECT_TRUE(contains(page, option)) << file << " lacks " << option;
     }
   }
@@ -125,8 +128,8 @@ TEST(CompletionCommand, IsAScriptThatItsShellReads) {
   const tests::TemporaryDirectory folder;
   std::ofstream(folder / "completion") << runPincer({"completion", "bash"}).out;
   const std::string offers = "bash -c 'source \"" + (folder / "completion") +
-                             "\"; COMP_WORDS=(pincer mesh chec) COMP_CWORD=2; _pincer; echo ${COMPREPLY[*]}' > \"" + (folder / "offered") +
-                             "\"";
+                             "\"; COMP_WORDS=(pincer mesh chec) COMP_CWORD=2; _pincer; echo ${COMPREPLY[*]}' > \"" +
+                             (folder / "offered") + "\"";
   ASSERT_EQ(std::system(offers.c_str()), 0);
   EXPECT_EQ(tests::readFile(folder / "offered"), "check\n");
   EXPECT_EQ(runPincer({"completion", "csh"}).exit_code, kExitUsage);
@@ -164,14 +167,15 @@ TEST(SimCommand, ChecksExpectations) {
   EXPECT_EQ(failed.exit_code, kExitCheckFailed);
   EXPECT_TRUE(contains(failed.out, "FAILS ball.p_z")) << failed.out;
   EXPECT_TRUE(contains(failed.out, "because it floats")) << failed.out;
-  EXPECT_EQ(runPincer({"sim", directory / "s.json", "--duration", "0.01"}).exit_code, kExitOk);  // its time doesn't come
+  // its time doesn't come
+  EXPECT_EQ(runPincer({"sim", directory / "s.json", "--duration", "0.01"}).exit_code, kExitOk);
 }
 
 TEST(SimCommand, WritesCsvAndJson) {
   const tests::TemporaryDirectory directory;
   const std::string csv = directory / "out.csv";
-  const AppResult result =
-      runPincer({"sim", kScenes + "s4_pinch_098.json", "--duration", "0.01", "--every", "0.002", "--out", csv, "--json"});
+  const AppResult result = runPincer(
+      {"sim", kScenes + "s4_pinch_098.json", "--duration", "0.01", "--every", "0.002", "--out", csv, "--json"});
   ASSERT_EQ(result.exit_code, kExitOk) << result.error;
   std::ifstream in(csv);
   const std::string table{std::istreambuf_iterator<char>(in), {}};
@@ -188,37 +192,37 @@ TEST(SimCommand, WritesCsvAndJson) {
 
 // Numbers that no run could mean: it would take years, or is no number.
 TEST(CommandLine, NumbersOutOfRangeAreMistakesOfUsage) {
-  for (const std::vector<std::string>& arguments :
-       std::vector<std::vector<std::string>>{{"sim", "s4_pinch", "--duration", "1e12"},
-                                             {"sim", "s4_pinch", "--duration", "nan"},
-                                             {"sim", "s4_pinch", "--duration", "inf"},
-                                             {"sim", "s4_pinch", "--every", "1e-400"},
-                                             {"sim", "s4_pinch", "--duration", "0.0005"},
-                                             {"sim", "heavy_top", "--out", "x.csv", "--every", "0.00015"},
-                                             {"plan", "s4_pinch", "--ticks", "1e30"},
-                                             {"mesh", "info", "x.obj", "--units", "m", "--density", "nan"},
-                                             {"mesh", "check", "x.obj", "--finger-radius", "inf"},
-                                             {"mesh", "convert", "x.obj", "y.obj", "--size", "1e300"},
-                                             {"mesh", "round-edges", "x.obj", "y.obj", "--radius", "nan"},
-                                             {"run", "sphere-pickup", "--mass", "nan"},
-                                             {"run", "sphere-pickup", "--participants", "0"},
-                                             {"run", "sphere-pickup", "--repetitions", "-3"},
-                                             {"run", "delay-discrimination", "--participants", "0"},
-                                             {"run", "delay-discrimination", "--sample-rate", "3"},
-                                             {"run", "delay-discrimination", "--resume"},
-                                             {"run", "sphere-pickup", "--resume"},
-                                             {"run", "sphere-pickup", "--devices", "mouse"},
-                                             {"run", "sphere-pickup", "--devices", "replay"},
-                                             {"run", "findings", "--experiments", "0"},
-                                             {"run", "findings", "--only", "nothing-of-that-name"},
-                                             {"sweep", "s4_pinch", "--vary", "sphere.mass=much"},
-                                             {"sweep", "s4_pinch", "--vary", "sphere.mass=1,2", "--vary", "sphere.mass=3,4"},
-                                             {"replay", "x.db", "--at", "nan"},
-                                             {"export", "x.db", "--every", "0"},
-                                             {"verify", "--only", "nothing-of-that-name"},
-                                             {"devices", "calibrate", "A1", "--set", "base_x"},
-                                             {"devices", "calibrate", "A1", "--set", "base_x=nan"},
-                                             {"devices", "list", "--timeout", "nan"}}) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"sim", "s4_pinch", "--duration", "1e12"},
+           {"sim", "s4_pinch", "--duration", "nan"},
+           {"sim", "s4_pinch", "--duration", "inf"},
+           {"sim", "s4_pinch", "--every", "1e-400"},
+           {"sim", "s4_pinch", "--duration", "0.0005"},
+           {"sim", "heavy_top", "--out", "x.csv", "--every", "0.00015"},
+           {"plan", "s4_pinch", "--ticks", "1e30"},
+           {"mesh", "info", "x.obj", "--units", "m", "--density", "nan"},
+           {"mesh", "check", "x.obj", "--finger-radius", "inf"},
+           {"mesh", "convert", "x.obj", "y.obj", "--size", "1e300"},
+           {"mesh", "round-edges", "x.obj", "y.obj", "--radius", "nan"},
+           {"run", "sphere-pickup", "--mass", "nan"},
+           {"run", "sphere-pickup", "--participants", "0"},
+           {"run", "sphere-pickup", "--repetitions", "-3"},
+           {"run", "delay-discrimination", "--participants", "0"},
+           {"run", "delay-discrimination", "--sample-rate", "3"},
+           {"run", "delay-discrimination", "--resume"},
+           {"run", "sphere-pickup", "--resume"},
+           {"run", "sphere-pickup", "--devices", "mouse"},
+           {"run", "sphere-pickup", "--devices", "replay"},
+           {"run", "findings", "--experiments", "0"},
+           {"run", "findings", "--only", "nothing-of-that-name"},
+           {"sweep", "s4_pinch", "--vary", "sphere.mass=much"},
+           {"sweep", "s4_pinch", "--vary", "sphere.mass=1,2", "--vary", "sphere.mass=3,4"},
+           {"replay", "x.db", "--at", "nan"},
+           {"export", "x.db", "--every", "0"},
+           {"verify", "--only", "nothing-of-that-name"},
+           {"devices", "calibrate", "A1", "--set", "base_x"},
+           {"devices", "calibrate", "A1", "--set", "base_x=nan"},
+           {"devices", "list", "--timeout", "nan"}}) {
     const AppResult wrong = runPincer(arguments);
     std::string line;
     for (const std::string& argument : arguments) line += argument + " ";
@@ -238,8 +242,9 @@ TEST(CommandLine, SpeaksOfOneThingAsOfOne) {
 TEST(RunCommand, LeavesASessionThatReportAndExportRead) {
   const tests::TemporaryDirectory directory;
   const std::string out = directory / "first";
-  const std::vector<std::string> command = {"run", "sphere-pickup", "--condition", "cld+force", "--friction", "0.9", "--repetitions",
-                                            "1",   "--no-report",   "--json",      "--out",     out};
+  const std::vector<std::string> command = {"run",         "sphere-pickup", "--condition",   "cld+force",
+                                            "--friction",  "0.9",           "--repetitions", "1",
+                                            "--no-report", "--json",        "--out",         out};
   const AppResult result = runPincer(command);
   ASSERT_EQ(result.exit_code, kExitOk) << result.error;
   EXPECT_EQ(parseJson(result.out, "stdout").at("trials").number(), 1);
@@ -256,8 +261,8 @@ TEST(RunCommand, RefusesBadOptionsBeforeItWritesAnything) {
   EXPECT_EQ(runPincer({"run", "sphere-pickup", "--mass", "-1", "--out", out}).exit_code, kExitUsage);
   EXPECT_FALSE(std::filesystem::exists(out));
   EXPECT_EQ(runPincer({"run", "sphere-pickup", "--object", "/nowhere/cow.obj", "--out", out}).exit_code, kExitBadInput);
-  const AppResult both =
-      runPincer({"run", "sphere-pickup", "--object", "/nowhere/cow.obj", "--units", "m", "--size", "0.06", "--out", out});
+  const AppResult both = runPincer(
+      {"run", "sphere-pickup", "--object", "/nowhere/cow.obj", "--units", "m", "--size", "0.06", "--out", out});
   EXPECT_EQ(both.exit_code, kExitBadInput) << "--size prevails over --units: " << both.error;
   EXPECT_EQ(runPincer({"run", "sphere-pickup", "--size", "0.06", "--out", out}).exit_code, kExitUsage);
   EXPECT_EQ(runPincer({"run", "sphere-pickup", "--shading", "smoothish", "--out", out}).exit_code, kExitUsage);
@@ -269,7 +274,8 @@ TEST(PlanCommand, NamesFormsAndMeasuresStages) {
   ASSERT_EQ(text.exit_code, kExitOk) << text.error;
   EXPECT_TRUE(contains(text.out, "sphere r 20 mm, 75 g; rotation: spherical top, exact")) << text.out;
   EXPECT_TRUE(contains(text.out, "thumb - sphere")) << text.out;
-  const JsonValue json = parseJson(runPincer({"plan", kScenes + "s1_tumbling_box.json", "--ticks", "100", "--json"}).out, "stdout");
+  const JsonValue json =
+      parseJson(runPincer({"plan", kScenes + "s1_tumbling_box.json", "--ticks", "100", "--json"}).out, "stdout");
   EXPECT_EQ(json.at("stages").array().size(), engine::kStageCount + 1u);
   EXPECT_EQ(json.at("ticks").number(), 100);
 }
@@ -278,7 +284,8 @@ TEST(MeshCommand, MeasuresATetrahedron) {
   const tests::TemporaryDirectory directory;
   const std::string obj = directory / "tetra.obj";
   std::ofstream(obj) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-  const JsonValue json = parseJson(runPincer({"mesh", "info", obj, "--units", "cm", "--density", "6000", "--json"}).out, "stdout");
+  const JsonValue json =
+      parseJson(runPincer({"mesh", "info", obj, "--units", "cm", "--density", "6000", "--json"}).out, "stdout");
   EXPECT_NEAR(json.at("volume").number(), 1e-6 / 6, 1e-20);
   EXPECT_NEAR(json.at("mass").at("mass").number(), 1e-3, 1e-17);
   EXPECT_NEAR(json.at("mass").at("p_BBcm").vector().x(), 0.0025, 1e-16);
@@ -297,7 +304,8 @@ TEST(MeshCommand, MeasuresATetrahedron) {
 // Figures of the exact scene hold, whatever its times are here; files are written, one row per run.
 TEST(BenchEngine, MeasuresASceneAndWritesItsTables) {
   const tests::TemporaryDirectory directory;
-  const AppResult r = runPincer({"bench", "engine", "--only", "s2", "--rounds", "1", "--json", "--out", directory.path()});
+  const AppResult r =
+      runPincer({"bench", "engine", "--only", "s2", "--rounds", "1", "--json", "--out", directory.path()});
   const JsonValue records = parseJson(r.out, "stdout");
   const JsonValue& error = records.array().at(0);
   EXPECT_EQ(error.at("name").text(), "s2/slide-to-roll");
@@ -315,7 +323,9 @@ TEST(BenchEngine, ListsItsScenes) {
   }
 }
 
-TEST(Interrupt, EndsARunCleanlyWithItsOwnExitCode) { EXPECT_EXIT(interruptARun(), ::testing::ExitedWithCode(kExitInterrupted), ""); }
+TEST(Interrupt, EndsARunCleanlyWithItsOwnExitCode) {
+  EXPECT_EXIT(interruptARun(), ::testing::ExitedWithCode(kExitInterrupted), "");
+}
 
 TEST(JsonWriter, WritesWhatAStrictReaderReads) {
   JsonWriter json;

@@ -21,13 +21,15 @@ TEST(SimGrasp, PinchTellsItsMargins) {
   EXPECT_FALSE(grasp.at("force_closure").boolean());
   EXPECT_NEAR(grasp.at("least_squeeze").number(), 1.962, 1e-6);
   EXPECT_NEAR(grasp.at("squeeze").number(), 4, 1e-9);
-  for (const JsonValue& contact : grasp.at("contacts").array()) EXPECT_NEAR(contact.at("slip_margin").number(), 0.5095, 1e-9);
+  for (const JsonValue& contact : grasp.at("contacts").array())
+    EXPECT_NEAR(contact.at("slip_margin").number(), 0.5095, 1e-9);
   EXPECT_TRUE(contains(runPincer({"sim", "s4_pinch", "--duration", "0.5", "--grasp"}).out,
                        "no force closure: nothing resists a turn about (1.00, 0.00, 0.00)"));
 }
 
 TEST(SimGrasp, SaysThatNothingIsHeld) {
-  EXPECT_TRUE(contains(runPincer({"sim", "s1_tumbling_box", "--duration", "0.01", "--grasp"}).out, "No finger presses a body"));
+  EXPECT_TRUE(
+      contains(runPincer({"sim", "s1_tumbling_box", "--duration", "0.01", "--grasp"}).out, "No finger presses a body"));
 }
 
 }  // namespace

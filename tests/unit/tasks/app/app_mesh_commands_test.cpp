@@ -52,7 +52,8 @@ TEST(MeshCheckCommand, SaysByItsExitCodeWhetherAMeshIsFit) {
 TEST(MeshCheckCommand, NamesFindingsForPrograms) {
   const tests::TemporaryDirectory directory;
   writeSamples(directory / "open.obj", directory / "whole.obj");
-  const JsonValue json = parseJson(runPincer({"mesh", "check", directory / "open.obj", "--units", "mm", "--json"}).out, "stdout");
+  const JsonValue json =
+      parseJson(runPincer({"mesh", "check", directory / "open.obj", "--units", "mm", "--json"}).out, "stdout");
   EXPECT_FALSE(json.at("fit").boolean());
   EXPECT_EQ(json.at("boundary_edges").number(), 4);
   EXPECT_EQ(json.at("findings").array()[0].at("name").text(), "boundary-edges");
@@ -86,22 +87,25 @@ TEST(MeshConvertCommand, KeepsWhatItConvertsAndScales) {
 TEST(MeshConvertCommand, ListsEveryRepairAndLeavesSoundFilesByteForByte) {
   const tests::TemporaryDirectory directory;
   writeSamples(directory / "open.obj", directory / "whole.obj");
-  const AppResult repaired =
-      runPincer({"mesh", "convert", directory / "open.obj", directory / "closed.obj", "--units", "mm", "--repair", "--fill-holes", "4"});
+  const AppResult repaired = runPincer({"mesh", "convert", directory / "open.obj", directory / "closed.obj", "--units",
+                                        "mm", "--repair", "--fill-holes", "4"});
   ASSERT_EQ(repaired.exit_code, kExitOk) << repaired.error;
   EXPECT_TRUE(contains(repaired.out, "* filled-holes: filled 1 hole with 2 triangles")) << repaired.out;
   EXPECT_EQ(runPincer({"mesh", "check", directory / "closed.obj", "--units", "mm"}).exit_code, kExitOk);
 
-  ASSERT_EQ(runPincer({"mesh", "convert", directory / "whole.obj", directory / "plain.obj", "--units", "mm"}).exit_code, kExitOk);
-  const AppResult sound =
-      runPincer({"mesh", "convert", directory / "whole.obj", directory / "again.obj", "--units", "mm", "--repair", "--weld", "1"});
+  ASSERT_EQ(runPincer({"mesh", "convert", directory / "whole.obj", directory / "plain.obj", "--units", "mm"}).exit_code,
+            kExitOk);
+  const AppResult sound = runPincer({"mesh", "convert", directory / "whole.obj", directory / "again.obj", "--units",
+                                     "mm", "--repair", "--weld", "1"});
   EXPECT_TRUE(contains(sound.out, "nothing to repair")) << sound.out;
   EXPECT_EQ(tests::readFile(directory / "again.obj"), tests::readFile(directory / "plain.obj"));
-  EXPECT_EQ(runPincer({"mesh", "convert", directory / "whole.obj", directory / "x.obj", "--weld", "1"}).exit_code, kExitUsage)
+  EXPECT_EQ(runPincer({"mesh", "convert", directory / "whole.obj", directory / "x.obj", "--weld", "1"}).exit_code,
+            kExitUsage)
       << "needs --repair";
 }
 
-// Two tetrahedra apart, the second one inside out and smaller: closed, of positive volume, and of no inertia that a solid could have.
+// Two tetrahedra apart, the second one inside out and smaller: closed, of positive volume,
+// and of no inertia that a solid could have.
 constexpr const char* kFlippedPiece =
     "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\nv 0 0 0.01\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
     "v 1 0 0\nv 1.009 0 0\nv 1 0.009 0\nv 1 0 0.009\nf 5 6 7\nf 5 8 6\nf 5 7 8\nf 6 8 7\n";
@@ -131,19 +135,22 @@ TEST(MeshConvertCommand, SaysByItsExitCodeThatARepairLeftTheMeshOpen) {
   EXPECT_TRUE(std::filesystem::exists(out));
   EXPECT_TRUE(contains(repaired.out, "boundary-edges")) << repaired.out;
   EXPECT_EQ(runPincer({"mesh", "convert", open, out, "--units", "mm"}).exit_code, kExitOk) << "nothing was promised";
-  EXPECT_EQ(runPincer({"mesh", "convert", open, out, "--units", "mm", "--repair", "--fill-holes", "10"}).exit_code, kExitOk);
+  EXPECT_EQ(runPincer({"mesh", "convert", open, out, "--units", "mm", "--repair", "--fill-holes", "10"}).exit_code,
+            kExitOk);
 }
 
 TEST(MeshRoundEdgesCommand, WritesNormalsThatMakeItSmooth) {
   const tests::TemporaryDirectory directory;
   writeSamples(directory / "open.obj", directory / "whole.obj");
   const std::string out = directory / "round.obj";
-  const AppResult result = runPincer({"mesh", "round-edges", directory / "whole.obj", out, "--units", "mm", "--radius", "1.5"});
+  const AppResult result =
+      runPincer({"mesh", "round-edges", directory / "whole.obj", out, "--units", "mm", "--radius", "1.5"});
   ASSERT_EQ(result.exit_code, kExitOk) << result.error;
   EXPECT_TRUE(contains(result.out, "rounded 12 edges, 8 corners and 0 tips to 1.5 mm")) << result.out;
   const contact::MeshReport report = contact::inspect(contact::readMesh(out, {.metres_per_unit = kMillimetre}));
   EXPECT_TRUE(report.closed && report.file_normals && report.crease_edges == 0);
-  const AppResult large = runPincer({"mesh", "round-edges", directory / "whole.obj", out, "--units", "mm", "--radius", "30"});
+  const AppResult large =
+      runPincer({"mesh", "round-edges", directory / "whole.obj", out, "--units", "mm", "--radius", "30"});
   EXPECT_EQ(large.exit_code, kExitBadInput);
   EXPECT_TRUE(contains(large.error, "--radius 19.8")) << large.error;
 }
@@ -151,7 +158,8 @@ TEST(MeshRoundEdgesCommand, WritesNormalsThatMakeItSmooth) {
 TEST(MeshSimplifyCommand, MakesAPartOfAScan) {
   const tests::TemporaryDirectory directory;
   const std::string scan = directory / "scan.obj", part = directory / "part.obj", fine = directory / "fine.obj";
-  contact::writeMesh(scan, contact::gridBox(Vec3::Constant(0.02), 50), {.metres_per_unit = kMillimetre});  // 30,000 triangles
+  // 30,000 triangles
+  contact::writeMesh(scan, contact::gridBox(Vec3::Constant(0.02), 50), {.metres_per_unit = kMillimetre});
   const AppResult check = runPincer({"mesh", "check", scan, "--units", "mm"});
   EXPECT_TRUE(contains(check.out, "many-triangles") && contains(check.out, "`pincer mesh simplify`")) << check.out;
   const AppResult result = runPincer({"mesh", "simplify", scan, part, "--units", "mm"});
@@ -171,7 +179,8 @@ TEST(MeshConvertCommand, OneBadPolygonIsLeftOutUnderRepair) {
   EXPECT_EQ(runPincer({"mesh", "convert", bad, out, "--units", "mm"}).exit_code, kExitBadInput);
   const AppResult check = runPincer({"mesh", "check", bad, "--units", "mm"});
   EXPECT_EQ(check.exit_code, kExitCheckFailed);
-  EXPECT_TRUE(contains(check.out, "! bad-faces: 1 face can't be used") && contains(check.out, "uses vertex 99")) << check.out;
+  EXPECT_TRUE(contains(check.out, "! bad-faces: 1 face can't be used") && contains(check.out, "uses vertex 99"))
+      << check.out;
   const AppResult repaired = runPincer({"mesh", "convert", bad, out, "--units", "mm", "--repair"});
   EXPECT_EQ(repaired.exit_code, kExitOk) << repaired.out;
   EXPECT_TRUE(contains(repaired.out, "left-out-faces: left out 1 face")) << repaired.out;
@@ -198,7 +207,8 @@ TEST(MeshesPage, EveryCommandRuns) {
     std::vector<std::string> arguments{std::istream_iterator<std::string>(words), {}};
     arguments.erase(arguments.begin());
     const AppResult result = runPincer(arguments);
-    const bool stays_open = contains(command, "--repair") && !contains(command, "--fill-holes");  // the scan lacks its bottom
+    // the scan lacks its bottom
+    const bool stays_open = contains(command, "--repair") && !contains(command, "--fill-holes");
     EXPECT_EQ(result.exit_code, stays_open ? kExitCheckFailed : kExitOk) << command << "\n" << result.error;
   }
   std::filesystem::current_path(before);
@@ -208,7 +218,8 @@ TEST(MeshesPage, EveryCommandRuns) {
 std::set<std::string> findingNames() {
   std::set<std::string> names;
   const std::regex finding("\\{\\s*\"([a-z-]+)\",\\s*(true|false)");
-  for (const char* file : {"/contact/mesh/mesh_findings.cpp", "/contact/mesh/mesh_report.cpp", "/tasks/app/commands/mesh_check.cpp"}) {
+  for (const char* file :
+       {"/contact/mesh/mesh_findings.cpp", "/contact/mesh/mesh_report.cpp", "/tasks/app/commands/mesh_check.cpp"}) {
     const std::string text = tests::readFile(std::string(PINCER_SOURCE_DIR) + file);
     for (std::sregex_iterator it(text.begin(), text.end(), finding), end; it != end; ++it) names.insert((*it)[1]);
   }

@@ -1,4 +1,5 @@
-// A seed has 64 bits, and all of them arrive: from options and study files, through sessions, to resuming and replaying.
+// A seed has 64 bits, and all of them arrive: from options and study files,
+// through sessions, to resuming and replaying.
 #include <gtest/gtest.h>
 
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
@@ -17,7 +18,8 @@ using tests::errorOf;
 using tests::runPincer;
 using tests::TemporaryDirectory;
 
-constexpr const char* kSeeds[] = {"9007199254740993", "9223372036854775809", "18446744073709551615"};  // 2^53 + 1, 2^63 + 1, 2^64 - 1
+// 2^53 + 1, 2^63 + 1, 2^64 - 1
+constexpr const char* kSeeds[] = {"9007199254740993", "9223372036854775809", "18446744073709551615"};
 
 void expectSeed(const std::string& path, const std::string& seed) {
   const SessionInfo info = SessionReader(path).info();
@@ -35,7 +37,8 @@ TEST(Seed, SessionsOfLargeSeedsAreResumedAndReplayed) {
     go_on.emplace_back("--resume");
     runPincer(begin);
     expectSeed(path, seed);
-    Database(path, Database::Mode::kWrite).run("DELETE FROM trial WHERE trial = 1; UPDATE session SET state = 'running'");
+    Database(path, Database::Mode::kWrite)
+        .run("DELETE FROM trial WHERE trial = 1; UPDATE session SET state = 'running'");
     const tests::AppResult resumed = runPincer(go_on);
     EXPECT_NE(resumed.exit_code, kExitBadInput) << resumed.error;
     EXPECT_TRUE(SessionReader(path).complete());
@@ -50,10 +53,14 @@ TEST(Seed, StudiesOfLargeSeedsAreResumed) {
   const std::string path = dir / "out/session.db";
   const std::string seed = kSeeds[2];
   std::ofstream(dir / "s.json") << R"({"repetitions": 1, "participants": 1, "seed": 18446744073709551615})";
-  EXPECT_EQ(runPincer({"run", "repeated-localisation", "--study", dir / "s.json", "--no-report", "--out", dir / "out"}).exit_code, kExitOk);
+  EXPECT_EQ(runPincer({"run", "repeated-localisation", "--study", dir / "s.json", "--no-report", "--out", dir / "out"})
+                .exit_code,
+            kExitOk);
   expectSeed(path, seed);
-  Database(path, Database::Mode::kWrite).run("DELETE FROM response WHERE trial > 1; UPDATE session SET state = 'running'");
-  const tests::AppResult resumed = runPincer({"run", "repeated-localisation", "--resume", "--no-report", "--out", dir / "out"});
+  Database(path, Database::Mode::kWrite)
+      .run("DELETE FROM response WHERE trial > 1; UPDATE session SET state = 'running'");
+  const tests::AppResult resumed =
+      runPincer({"run", "repeated-localisation", "--resume", "--no-report", "--out", dir / "out"});
   EXPECT_EQ(resumed.exit_code, kExitOk) << resumed.error;
   EXPECT_TRUE(SessionReader(path).complete());
 }
@@ -69,12 +76,14 @@ TEST(Seed, OutOfRangeIsAUsageErrorWithTheRange) {
                                                           {"stress"},
                                                           {"sweep", "sphere-pickup", "--vary", "pickup.mass=0.1,0.2"}};
   for (std::vector<std::string> command : commands) {
-    for (const char* seed : {"--seed=-1", "--seed=18446744073709551616", "--seed=1.5", "--seed=1e3", "--seed=seven", "--seed=0x10"}) {
+    for (const char* seed :
+         {"--seed=-1", "--seed=18446744073709551616", "--seed=1.5", "--seed=1e3", "--seed=seven", "--seed=0x10"}) {
       std::vector<std::string> with = command;
       with.emplace_back(seed);
       const tests::AppResult result = runPincer(with);
       EXPECT_EQ(result.exit_code, kExitUsage) << seed << ": " << result.error;
-      EXPECT_TRUE(contains(result.error, "isn't a whole number in [0, 18446744073709551615]")) << seed << ": " << result.error;
+      EXPECT_TRUE(contains(result.error, "isn't a whole number in [0, 18446744073709551615]"))
+          << seed << ": " << result.error;
     }
   }
   const tests::AppResult apart = runPincer({"run", "sphere-pickup", "--seed", "-1"});
@@ -90,7 +99,9 @@ TEST(Seed, OfAStudyFileIsExactOrRefusedWithTheRange) {
   }
   for (const char* seed : {"-1", "1.5", "18446744073709551616", "1e300"}) {
     const std::string error = errorOf([&] { parseStudyFile(std::string("{\"seed\": ") + seed + "}", "s.json"); });
-    EXPECT_TRUE(contains(error, "s.json:1: seed = ") && contains(error, "isn't a whole number in [0, 18446744073709551615]")) << error;
+    EXPECT_TRUE(contains(error, "s.json:1: seed = ") &&
+                contains(error, "isn't a whole number in [0, 18446744073709551615]"))
+        << error;
   }
 }
 

@@ -142,16 +142,20 @@ TEST(ArmBases, AreMovedAndTurnedByTheirCalibrationAndTheFingersStay) {
   const Pose &now = scene.model.mounts[0].X_WD, &before = nominal.model.mounts[0].X_WD;
   EXPECT_NEAR((now.p - before.p - Vec3(-0.01, 0, 0.02)).norm(), 0, 1e-12);
   EXPECT_NEAR(now.q.angularDistance(before.q), 0.2, 1e-12);
-  EXPECT_NEAR((now.q * scene.q_DF[0]).angularDistance(before.q * nominal.q_DF[0]), 0, 1e-7) << "the finger itself hasn't turned";
+  EXPECT_NEAR((now.q * scene.q_DF[0]).angularDistance(before.q * nominal.q_DF[0]), 0, 1e-7)
+      << "the finger itself hasn't turned";
   EXPECT_EQ(scene.model.mounts[1].X_WD.p, nominal.model.mounts[1].X_WD.p);
 }
 
 TEST(ArmBases, ThatDoNotFaceEachOtherAreRefusedByName) {
   tasks::HandScene turned = sceneOfArms();
-  const std::string why = errorOf([&] { tasks::standArms(turned, {tasks::ArmBase{}, tasks::ArmBase{Vec3::Zero(), 0.6}}); });
+  const std::string why = errorOf([&] {
+    tasks::standArms(turned, {tasks::ArmBase{}, tasks::ArmBase{Vec3::Zero(), 0.6}});
+  });
   EXPECT_TRUE(contains(why, "thumb") && contains(why, "base_turn = 0.6")) << why;
   tasks::HandScene behind = sceneOfArms();
-  EXPECT_THROW(tasks::standArms(behind, {tasks::ArmBase{Vec3(1, 0, 0), 0}, tasks::ArmBase{}}), InputError) << "behind the other one";
+  EXPECT_THROW(tasks::standArms(behind, {tasks::ArmBase{Vec3(1, 0, 0), 0}, tasks::ArmBase{}}), InputError)
+      << "behind the other one";
 }
 
 // It named the last column as missing.
@@ -178,7 +182,8 @@ TEST(ReplayHand, NamesWhatIsWrongInTheFile) {
   EXPECT_TRUE(contains(errorOf([&] { tasks::openHandDevices(replayOf(path)); }), ":3: \"zero\""));
   const std::string header = "trial,time_s,f0_p_DF_x_m,f0_p_DF_y_m,f0_p_DF_z_m,f1_p_DF_x_m,f1_p_DF_y_m,f1_p_DF_z_m\n";
   writeText(path, header + "1,0,0,0,0,0,0\n");
-  EXPECT_TRUE(contains(errorOf([&] { tasks::openHandDevices(replayOf(path)); }), ":2: \"\" in column 8")) << "a row that is cut off";
+  EXPECT_TRUE(contains(errorOf([&] { tasks::openHandDevices(replayOf(path)); }), ":2: \"\" in column 8"))
+      << "a row that is cut off";
   writeText(path, header);
   EXPECT_TRUE(contains(errorOf([&] { tasks::openHandDevices(replayOf(path)); }), "no places"));
   EXPECT_THROW(tasks::openHandDevices(replayOf("")), DeviceError);

@@ -68,7 +68,8 @@ void readAsStudy(const Example& example) {
   ASSERT_TRUE(example.task == "shape-identification" || example.task == "repeated-localisation") << example.text;
   ShapeStudy shapes;
   LocalisationStudy places;
-  example.task == "shape-identification" ? parseStudy(example.text, example.page, shapes) : parseStudy(example.text, example.page, places);
+  example.task == "shape-identification" ? parseStudy(example.text, example.page, shapes)
+                                         : parseStudy(example.text, example.page, places);
 }
 
 // A scene, or keys of one, or a finger.
@@ -98,7 +99,8 @@ TEST(DocsExamples, ScenesAndStudiesThatAreShownAreTaken) {
   EXPECT_GE(scenes, 3);
 }
 
-// A condition with a name that isn't published begins as the first published one: its staircase is one that can be shown.
+// A condition with a name that isn't published begins as the first published
+// one: its staircase is one that can be shown.
 TEST(DocsExamples, ANewConditionBeginsAsTheFirstPublishedOne) {
   ArcStudy study = delayStudy();
   parseStudy(R"({"conditions": [{"name": "half", "travel_share": 0.5}]})", "s.json", study);
@@ -116,13 +118,20 @@ TEST(DocsExamples, AStudyThatContradictsItselfIsRefusedWithFileAndLine) {
       parseStudy(text, "s.json", study);
     });
   };
-  const auto expectStart = [](const std::string& text, const std::string& start) { EXPECT_EQ(text.substr(0, start.size()), start); };
-  expectStart(said("{\n\"conditions\": [\n{\"name\": \"whole\"},\n{\"name\": \"half\",\n\"staircase\": {\"averaged\": 99}}]}"),
-              "s.json:5: delay-discrimination: condition half: staircase: averaged = 99 is out of range [1, reversals]");
+  const auto expectStart = [](const std::string& text, const std::string& start) {
+    EXPECT_EQ(text.substr(0, start.size()), start);
+  };
+  expectStart(
+      said("{\n\"conditions\": [\n{\"name\": \"whole\"},\n{\"name\": \"half\",\n\"staircase\": {\"averaged\": 99}}]}"),
+      "s.json:5: delay-discrimination: condition half: staircase: averaged = 99 is out of range [1, reversals]");
   expectStart(said("{\"seed\": 1,\n\"strokes\": 3}"), "s.json:2: delay-discrimination: strokes = 3 is odd");
   expectStart(said("{\"seed\": 1,\n\"conditions\": []}"), "s.json:2: delay-discrimination: conditions is empty");
-  expectStart(errorOf([] { parseStudyFile("{\"seed\": 1,\n\"tasks\": []}", "m.json"); }), "m.json:2: study: tasks is empty");
-  expectStart(errorOf([] { parseStudyFile("{\"seed\": 1,\n\"cylinder_alignment\": {\"start_min\": 2,\n\"start_max\": 1}}", "m.json"); }),
+  expectStart(errorOf([] { parseStudyFile("{\"seed\": 1,\n\"tasks\": []}", "m.json"); }),
+              "m.json:2: study: tasks is empty");
+  expectStart(errorOf([] {
+                parseStudyFile("{\"seed\": 1,\n\"cylinder_alignment\": {\"start_min\": 2,\n\"start_max\": 1}}",
+                               "m.json");
+              }),
               "m.json:3: cylinder-alignment: start_max = 1 is out of range [2, 3.1416]");
   const tests::TemporaryDirectory folder;
   std::ofstream(folder / "odd.json") << "{\n\"strokes\": 3}";

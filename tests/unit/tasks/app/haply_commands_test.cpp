@@ -1,4 +1,5 @@
-// The program with Haply's service, emulated in this process: list, test, calibrate, and a whole session that replays to the bit.
+// The program with Haply's service, emulated in this process: list, test, calibrate, and
+// a whole session that replays to the bit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -42,14 +43,15 @@ TEST(HaplyCommands, ListTheServicesDevicesAndSayWhenNobodyAnswers) {
 
 TEST(HaplyCommands, TestDrivesAnArmByItselfAndGivesAVerdict) {
   HaplyServer server;
-  const AppResult test = runPincer(
-      {"devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes", "--watchdog", "100", "--service", server.place()});
+  const AppResult test = runPincer({"devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes",
+                                    "--watchdog", "100", "--service", server.place()});
   const bool fit = contains(test.out, "Verdict: fit for a session");  // on a busy machine it says why not
   EXPECT_EQ(test.exit_code, fit ? 0 : 4) << test.out << test.error;
   EXPECT_TRUE(fit || contains(test.out, "Verdict: not fit")) << test.out;
   EXPECT_TRUE(contains(test.out, "age of a sample")) << test.out;
   EXPECT_EQ(server.force(0), 0);
-  const AppResult other = runPincer({"devices", "test", "04XX", "--devices", "haply", "--yes", "--service", server.place()});
+  const AppResult other =
+      runPincer({"devices", "test", "04XX", "--devices", "haply", "--yes", "--service", server.place()});
   EXPECT_EQ(other.exit_code, 4);
   EXPECT_TRUE(contains(other.error, "04XX")) << other.error;
 }
@@ -57,8 +59,8 @@ TEST(HaplyCommands, TestDrivesAnArmByItselfAndGivesAVerdict) {
 TEST(HaplyCommands, TestFindsAnArmThatDoesNotMove) {
   HaplyServer server;
   server.setFault(devices::emulate::HaplyFault::kPlaceFrozen);
-  const AppResult test = runPincer(
-      {"devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes", "--watchdog", "100", "--service", server.place()});
+  const AppResult test = runPincer({"devices", "test", "049D", "--devices", "haply", "--force", "0.3", "--yes",
+                                    "--watchdog", "100", "--service", server.place()});
   EXPECT_EQ(test.exit_code, 4);
   EXPECT_TRUE(contains(test.out, "not fit")) << test.out;
 }
@@ -67,16 +69,19 @@ TEST(HaplyCommands, CalibrateWritesWhereAnArmStandsToAFile) {
   const TemporaryDirectory folder;
   HaplyServer server;
   const std::string file = folder / "A.json";
-  const AppResult here = runPincer({"devices", "calibrate", "049D", "--devices", "haply", "--here", "--set", "mount_turn=0.1", "--align",
-                                    "index", "--grip", "1605", "--save", file, "--service", server.place()});
+  const AppResult here =
+      runPincer({"devices", "calibrate", "049D", "--devices", "haply", "--here", "--set", "mount_turn=0.1", "--align",
+                 "index", "--grip", "1605", "--save", file, "--service", server.place()});
   ASSERT_EQ(here.exit_code, 0) << here.error;
   const tasks::DeviceCalibration calibration = tasks::readCalibration(file);
   EXPECT_EQ(calibration.serial, "049D");
   EXPECT_EQ(calibration.values.at("mount_turn"), 0.1);
   EXPECT_NEAR(calibration.values.at("centre_y"), -0.17, 2e-3);
   EXPECT_NEAR(tasks::haplyArmOf(calibration, "1605").frame.q_align.norm(), 1, 1e-9);
-  EXPECT_EQ(
-      runPincer({"devices", "calibrate", "049D", "--devices", "haply", "--set", "peak_force=9", "--set", "idle_after=0.05"}).exit_code, 3);
+  EXPECT_EQ(runPincer({"devices", "calibrate", "049D", "--devices", "haply", "--set", "peak_force=9", "--set",
+                       "idle_after=0.05"})
+                .exit_code,
+            3);
   EXPECT_EQ(runPincer({"devices", "calibrate", "049D", "--here"}).exit_code, 2);
 }
 
@@ -104,11 +109,13 @@ TEST(HaplyCommands, CalibrateTakesOutTheDriftOfAGripAndRefusesAnotherTurn) {
   EXPECT_NEAR(tasks::readCalibration(file).values.at("grip_yaw"), 0.3, 1e-3) << "kept";
 }
 
-// The emulated hands hold both knobs, 30 mm apart, at one place after another, all within reach; the thumb's arm stands 20 mm and 8 degrees off.
+// The emulated hands hold both knobs, 30 mm apart, at one place after another, all within reach; the
+// thumb's arm stands 20 mm and 8 degrees off.
 TEST(HaplyCommands, TouchFindsWhereTheSecondArmStands) {
   const TemporaryDirectory folder;
   const tasks::SpherePickupOptions options;
-  const tasks::HandScene scene = tasks::makePickupScene(options, tasks::makePickupObject(options), tasks::PickupTrialSpec{});
+  const tasks::HandScene scene =
+      tasks::makePickupScene(options, tasks::makePickupObject(options), tasks::PickupTrialSpec{});
   const Pose X_WA = scene.model.mounts[0].X_WD, nominal = scene.model.mounts[1].X_WD;
   const double turn = 8 * std::numbers::pi / 180;
   const Pose X_WB{quatFromRotationVector({0, 0, turn}) * nominal.q, nominal.p + Vec3(0.012, -0.016, 0.004)};
@@ -124,8 +131,8 @@ TEST(HaplyCommands, TouchFindsWhereTheSecondArmStands) {
     hold(0, X_WA, place_W + 0.015 * direction);
     hold(1, X_WB, place_W - 0.015 * direction);
   });
-  const AppResult touch = runPincer(
-      {"devices", "calibrate", "049D,04BA", "--devices", "haply", "--touch", "--save", folder / "B.json", "--service", server.place()});
+  const AppResult touch = runPincer({"devices", "calibrate", "049D,04BA", "--devices", "haply", "--touch", "--save",
+                                     folder / "B.json", "--service", server.place()});
   ASSERT_EQ(touch.exit_code, 0) << touch.out << touch.error;
   const tasks::ArmBase base = tasks::armBaseIn(tasks::readCalibration(folder / "B.json"));
   EXPECT_LT((base.offset_W - Vec3(0.012, -0.016, 0.004)).norm(), 0.5e-3) << touch.out;
@@ -150,13 +157,14 @@ TEST(HaplyCalibration, AllowsMoreForceOnlyOnceTheArmsOwnDeadlineWasMeasured) {
 }
 
 TEST(HaplyCommands, RefuseTwoArmsWhoseStanceNobodyKnows) {
-  const AppResult run = runPincer({"run", "sphere-pickup", "--devices", "haply", "--arms", "049D,04BA", "--service", "127.0.0.1:1"});
+  const AppResult run =
+      runPincer({"run", "sphere-pickup", "--devices", "haply", "--arms", "049D,04BA", "--service", "127.0.0.1:1"});
   EXPECT_EQ(run.exit_code, 4);
   EXPECT_TRUE(contains(run.error, "calibrat") && contains(run.error, "049D")) << run.error;
 }
 
-// Two arms, two grips, a hand that feels nothing but them; forces, gate and session by the wall clock. How punctual this machine is isn't
-// asked: a trial may end in a fault, and is replayed like any other.
+// Two arms, two grips, a hand that feels nothing but them; forces, gate and session by the wall clock. How punctual
+// this machine is isn't asked: a trial may end in a fault, and is replayed like any other.
 TEST(HaplyCommands, ASphereIsPickedUpAndTheSessionReplaysToTheBit) {
   const TemporaryDirectory folder;
   std::optional<tasks::HaplyWearer> wearer;
@@ -165,7 +173,9 @@ TEST(HaplyCommands, ASphereIsPickedUpAndTheSessionReplaysToTheBit) {
     wearer->act(service);
   });
   for (const char* id : {"049D", "04BA"}) {
-    ASSERT_EQ(runPincer({"devices", "calibrate", id, "--devices", "haply", "--set", "align_w=1", "--save", folder / id}).exit_code, 0);
+    ASSERT_EQ(runPincer({"devices", "calibrate", id, "--devices", "haply", "--set", "align_w=1", "--save", folder / id})
+                  .exit_code,
+              0);
   }
   const std::string out = folder / "session";
   const AppResult run = runPincer({"run",

@@ -1,4 +1,5 @@
-// Scenes, studies, trajectories and calibrations from hostile files: bounded in time and memory, and named in messages that fit a terminal.
+// Scenes, studies, trajectories and calibrations from hostile files: bounded in time and memory,
+// and named in messages that fit a terminal.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -53,8 +54,10 @@ std::string balls(std::size_t count) {
   std::string text;
   for (std::size_t i = 0; i < count; ++i) {
     text += fmt::format(
-        "{}\n{{\"name\": \"ball{}\", \"shape\": {{\"type\": \"sphere\", \"radius\": 0.01}}, \"mass\": 0.1, \"position\": [{}, {}, {}]}}",
-        i ? "," : "", i, 0.05 * static_cast<double>(i % 16), 0.05 * static_cast<double>(i / 16 % 16), 0.05 * static_cast<double>(i / 256));
+        "{}\n{{\"name\": \"ball{}\", \"shape\": {{\"type\": \"sphere\", \"radius\": 0.01}}, \"mass\": 0.1, "
+        "\"position\": [{}, {}, {}]}}",
+        i ? "," : "", i, 0.05 * static_cast<double>(i % 16), 0.05 * static_cast<double>(i / 16 % 16),
+        0.05 * static_cast<double>(i / 256));
   }
   return text;
 }
@@ -64,12 +67,20 @@ TEST(InputLimits, DevicesAndPipesAreNotReadAsScenesStudiesOrTrajectories) {
   const std::string pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const std::string& path : {std::string("/dev/zero"), pipe, folder.path()}) {
-    EXPECT_TRUE(contains(errorOf([&] { readScene(path); }), "a scene (a JSON file, docs/scenes.md) is needed here")) << path;
-    EXPECT_TRUE(contains(errorOf([&] { readStudyFile(path); }), "a study (a JSON file, docs/experiments.md) is needed here")) << path;
-    EXPECT_TRUE(contains(errorOf([&] { readTrajectoryCsv(path); }), "a trajectory (a CSV file, docs/scenes.md) is needed here")) << path;
-    EXPECT_TRUE(contains(errorOf([&] { readCalibration(path); }), "a calibration (a JSON file, docs/devices/setup.md) is needed here"))
+    EXPECT_TRUE(contains(errorOf([&] { readScene(path); }), "a scene (a JSON file, docs/scenes.md) is needed here"))
         << path;
-    EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "replay", "--recording", path, "--out", folder / "out"}).exit_code, 3)
+    EXPECT_TRUE(
+        contains(errorOf([&] { readStudyFile(path); }), "a study (a JSON file, docs/experiments.md) is needed here"))
+        << path;
+    EXPECT_TRUE(
+        contains(errorOf([&] { readTrajectoryCsv(path); }), "a trajectory (a CSV file, docs/scenes.md) is needed here"))
+        << path;
+    EXPECT_TRUE(contains(errorOf([&] { readCalibration(path); }),
+                         "a calibration (a JSON file, docs/devices/setup.md) is needed here"))
+        << path;
+    EXPECT_EQ(runPincer({"run", "sphere-pickup", "--devices", "replay", "--recording", path, "--out", folder / "out"})
+                  .exit_code,
+              3)
         << path;
     EXPECT_EQ(runPincer({"run", "delay-discrimination", "--study", path}).exit_code, 3) << path;
     EXPECT_EQ(runPincer({"sim", path}).exit_code, 3) << path;
@@ -83,8 +94,8 @@ TEST(InputLimits, AFileOf200MegabytesIsRefusedUnread) {
   std::ofstream(path) << "{";
   ASSERT_EQ(::truncate(path.c_str(), 200'000'000), 0);
   const double before = memoryInUse();
-  EXPECT_TRUE(
-      contains(errorOf([&] { readScene(path); }), "the file has 190.7 MB; a scene (a JSON file, docs/scenes.md) has at most 8 MB."));
+  EXPECT_TRUE(contains(errorOf([&] { readScene(path); }),
+                       "the file has 190.7 MB; a scene (a JSON file, docs/scenes.md) has at most 8 MB."));
   EXPECT_TRUE(contains(errorOf([&] { readTrajectoryCsv(path); }), "has at most 64 MB"));
   EXPECT_LT(memoryInUse() - before, 20e6);
 }
@@ -117,10 +128,11 @@ TEST(InputLimits, GarbageAfterANulByteIsNotPassedOver) {
 
 TEST(InputLimits, AnUnknownKeyOf5MegabytesIsNamedAtOnceAndCut) {
   const std::string key(5'000'000, 'k');
-  for (const std::string& text : {"{\"" + key + "\": 1}", "{\"version\": 1, \"duration\": 1, \"bodies\": [{\"" + key + "\": 1}]}",
-                                  "{\"version\": 1, \"duration\": 1, \"bodies\": [{\"shape\": {\"type\": \"" + key + "\"}}]}",
-                                  "{\"version\": 1, \"duration\": 1, \"bodies\": [{\"name\": \"" + key + "\"}]}",
-                                  "{\"" + key + "\": 1, \"" + key + "\": 2}", "{\"version\": \"" + key + "\"}"}) {
+  for (const std::string& text :
+       {"{\"" + key + "\": 1}", "{\"version\": 1, \"duration\": 1, \"bodies\": [{\"" + key + "\": 1}]}",
+        "{\"version\": 1, \"duration\": 1, \"bodies\": [{\"shape\": {\"type\": \"" + key + "\"}}]}",
+        "{\"version\": 1, \"duration\": 1, \"bodies\": [{\"name\": \"" + key + "\"}]}",
+        "{\"" + key + "\": 1, \"" + key + "\": 2}", "{\"version\": \"" + key + "\"}"}) {
     std::string said;
     EXPECT_LT(secondsOf([&] { said = errorOf([&] { parseScene(text, "s.json"); }); }), kSoon);
     EXPECT_TRUE(contains(said, "kkk") && contains(said, "...")) << said.substr(0, 300);
@@ -139,9 +151,10 @@ TEST(InputLimits, ManyKeysAreComparedInLessThanTheSquareOfTheirNumber) {
 
 TEST(InputLimits, EscapeSequencesInAFileDoNotReachTheTerminal) {
   const auto said = [](const std::string& text) { return errorOf([&] { parseScene(text, "s.json"); }); };
-  for (const std::string& text : {std::string(R"({"\u001b[31mred": 1})"), std::string(R"({"version": "\u001b]0;title\u0007"})"),
-                                  std::string(R"({"version": 1, "duration": 1, "bodies": [{"name": "a\u0000b"}]})"),
-                                  std::string("{\"version\": \x1b[31m}"), std::string(R"({"a\u0000": 1, "a\u0000": 2})")}) {
+  for (const std::string& text :
+       {std::string(R"({"\u001b[31mred": 1})"), std::string(R"({"version": "\u001b]0;title\u0007"})"),
+        std::string(R"({"version": 1, "duration": 1, "bodies": [{"name": "a\u0000b"}]})"),
+        std::string("{\"version\": \x1b[31m}"), std::string(R"({"a\u0000": 1, "a\u0000": 2})")}) {
     const std::string message = said(text);
     EXPECT_FALSE(message.empty());
     EXPECT_EQ(message.find_first_of(std::string("\x1b\x07\0", 3)), std::string::npos) << message;
@@ -151,7 +164,8 @@ TEST(InputLimits, EscapeSequencesInAFileDoNotReachTheTerminal) {
   EXPECT_FALSE(contains(runPincer({"sim", name}).error, "\x1b"));
   EXPECT_FALSE(contains(runPincer({"mesh", "info", name, "--units", "m"}).error, "\x1b"));
   EXPECT_FALSE(contains(runPincer({"sim", "s4_pinch", "--\x1b[31m"}).error, "\x1b"));
-  std::ofstream(name) << R"({"version": 1, "duration": 0.01, "description": "a\u001b[31mb", "bodies": [)" << balls(1) << "]}";
+  std::ofstream(name) << R"({"version": 1, "duration": 0.01, "description": "a\u001b[31mb", "bodies": [)" << balls(1)
+                      << "]}";
   const auto ran = runPincer({"sim", name});
   EXPECT_EQ(ran.exit_code, 0) << ran.error;
   EXPECT_FALSE(contains(ran.out, "\x1b[31m")) << ran.out;
@@ -160,7 +174,9 @@ TEST(InputLimits, EscapeSequencesInAFileDoNotReachTheTerminal) {
 
 TEST(InputLimits, AMessageListsSomeOfThousandsOfNames) {
   const std::string said = errorOf([&] {
-    parseScene("{\"version\": 1, \"duration\": 1, \"bodies\": [" + balls(2000) + R"(], "record": {"quantities": ["cube.p_z"]}})", "s");
+    parseScene("{\"version\": 1, \"duration\": 1, \"bodies\": [" + balls(2000) +
+                   R"(], "record": {"quantities": ["cube.p_z"]}})",
+               "s");
   });
   EXPECT_TRUE(contains(said, "ball29 and 1970 more.")) << said;
 }
@@ -179,12 +195,13 @@ TEST(InputLimits, AsManyBodiesAsMayBeAreReadAndBuiltAtOnce) {
 
 TEST(InputLimits, AsManyJointsAndPairsAsMayBeAreReadAndBuiltAtOnce) {
   std::string joints, pairs;
-  for (std::size_t i = 0; i < kMostJoints; ++i) joints += fmt::format("{}{{\"type\": \"pivot\", \"body\": \"ball{}\"}}", i ? "," : "", i);
+  for (std::size_t i = 0; i < kMostJoints; ++i)
+    joints += fmt::format("{}{{\"type\": \"pivot\", \"body\": \"ball{}\"}}", i ? "," : "", i);
   for (std::size_t i = 0; i < kMostPairs; ++i)
     pairs += fmt::format("{}{{\"bodies\": [\"ball{}\", \"ball{}\"], \"material\": {{\"mu_s\": 0.1}}}}", i ? "," : "",
                          i % (kMostBodies - 1) + 1, i % 7 == 0 ? 0 : (i * 31) % (i % (kMostBodies - 1) + 1));
-  const std::string text = "{\"version\": 1, \"duration\": 0.01, \"bodies\": [" + balls(kMostBodies) + "],\n\"joints\": [" + joints +
-                           "],\n\"pairs\": [" + pairs + "]}";
+  const std::string text = "{\"version\": 1, \"duration\": 0.01, \"bodies\": [" + balls(kMostBodies) +
+                           "],\n\"joints\": [" + joints + "],\n\"pairs\": [" + pairs + "]}";
   EXPECT_LT(secondsOf([&] { buildWorld(parseScene(text, "s.json")); }), 2 * kSoon);
 }
 
@@ -196,7 +213,9 @@ TEST(InputLimits, WhoMayTouchIsTheSameCountedAndListed) {
   for (int i = 1; i < 20; ++i) pairs += fmt::format("{{\"bodies\": [\"ball0\", \"ball{}\"], \"touch\": false}},", i);
   pairs += R"({"bodies": ["ball0", "floor"], "touch": false}, {"bodies": ["floor", "ball0"], "touch": false})";
   const auto touches = [&](const std::string& more) {
-    return buildWorld(parseScene("{\"version\": 1, \"duration\": 1, \"bodies\": [" + bodies + "], \"pairs\": [" + pairs + more + "]}", "s"))
+    return buildWorld(parseScene("{\"version\": 1, \"duration\": 1, \"bodies\": [" + bodies + "], \"pairs\": [" +
+                                     pairs + more + "]}",
+                                 "s"))
         .world;
   };
   EXPECT_TRUE(touches("").has_broad_phase);
@@ -210,8 +229,10 @@ TEST(InputLimits, OfTwoMaterialsForOnePairTheLastCounts) {
   const std::string pairs =
       R"({"bodies": ["ball0", "ball1"], "material": {"mu_s": 0.1}}, {"bodies": ["ball2", "ball1"], "material": {"mu_s": 0.2}},
     {"bodies": ["ball1", "ball0"], "material": {"mu_s": 0.3}})";
-  const auto world =
-      buildWorld(parseScene("{\"version\": 1, \"duration\": 1, \"bodies\": [" + balls(3) + "], \"pairs\": [" + pairs + "]}", "s")).world;
+  const auto world = buildWorld(parseScene("{\"version\": 1, \"duration\": 1, \"bodies\": [" + balls(3) +
+                                               "], \"pairs\": [" + pairs + "]}",
+                                           "s"))
+                         .world;
   EXPECT_EQ(engine::materialOf(world, 0, 1).mu_s, 0.3);
   EXPECT_EQ(engine::materialOf(world, 1, 2).mu_s, 0.2);
   EXPECT_EQ(world.special_pairs.size(), 2u);
@@ -222,11 +243,13 @@ TEST(InputLimits, CalibrationsAndStudiesHaveBoundedLists) {
   std::string values;
   for (int i = 0; i < 100; ++i) values += fmt::format("{}\"v{}\": 0", i ? "," : "", i);
   std::ofstream(folder / "c.json") << "{\"device\": \"A\", \"values\": {" << values << "}}";
-  EXPECT_TRUE(contains(errorOf([&] { readCalibration(folder / "c.json"); }), "has 100 values; no device has more than 64"));
+  EXPECT_TRUE(
+      contains(errorOf([&] { readCalibration(folder / "c.json"); }), "has 100 values; no device has more than 64"));
   std::string frictions = "0.5";
   for (int i = 0; i < 200; ++i) frictions += ", 0.5";
-  EXPECT_TRUE(contains(errorOf([&] { parseStudyFile("{\"sphere_pickup\": {\"frictions\": [" + frictions + "]}}", "s"); }),
-                       "has 201 elements; at most 100 are allowed"));
+  EXPECT_TRUE(
+      contains(errorOf([&] { parseStudyFile("{\"sphere_pickup\": {\"frictions\": [" + frictions + "]}}", "s"); }),
+               "has 201 elements; at most 100 are allowed"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Damaged scenes, studies and trajectories: each is refused with an InputError, or taken; nothing else may happen, and none takes long.
-// 500 mutants of each kind; PINCER_MUTANTS=N makes N, PINCER_LONG_TESTS a hundred times as many.
+// Damaged scenes, studies and trajectories: each is refused with an InputError, or taken; nothing else may happen, and
+// none takes long. 500 mutants of each kind; PINCER_MUTANTS=N makes N, PINCER_LONG_TESTS a hundred times as many.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,8 @@ int mutants() {
   return asked ? std::atoi(asked) : tests::draws(500, 100);
 }
 
-// Changes a text where it hurts: bytes, numbers, brackets, pieces doubled, dropped, swapped or put in from another text.
+// Changes a text where it hurts: bytes, numbers, brackets, pieces doubled,
+// dropped, swapped or put in from another text.
 class Mutator {
  public:
   explicit Mutator(std::vector<std::string> texts) : texts_(std::move(texts)) {}
@@ -76,7 +77,8 @@ class Mutator {
                                                     "\xe2\x80\xae",
                                                     "9007199254740993",
                                                     "1e-6"};
-    const std::size_t at = place(text, random), length = std::min(text.size() - at, static_cast<std::size_t>(1 + random.below(40)));
+    const std::size_t at = place(text, random),
+                      length = std::min(text.size() - at, static_cast<std::size_t>(1 + random.below(40)));
     switch (random.below(8)) {
       case 0:
         text[at] = static_cast<char>(random.below(256));
@@ -94,7 +96,8 @@ class Mutator {
         replaceNumber(text, at, pick(random, kWords));
         break;
       case 5:
-        replaceNumber(text, at, fmt::format("{}", std::pow(10.0, random.uniform(-320, 308)) * (random.below(4) ? 1 : -1)));
+        replaceNumber(text, at,
+                      fmt::format("{}", std::pow(10.0, random.uniform(-320, 308)) * (random.below(4) ? 1 : -1)));
         break;
       case 6: {
         const std::string& other = pick(random, texts_);
@@ -155,7 +158,8 @@ TEST(Mutants, OfScenesAreTakenOrRefused) {
 
 TEST(Mutants, OfStudiesAreTakenOrRefused) {
   hammer({studyFile(ManipulationStudy{})}, [](const std::string& text) { parseStudyFile(text, "mutant.json"); });
-  const std::vector<std::string> arcs = {studyJson(smoothnessStudy()), studyJson(backlashStudy()), studyJson(delayStudy())};
+  const std::vector<std::string> arcs = {studyJson(smoothnessStudy()), studyJson(backlashStudy()),
+                                         studyJson(delayStudy())};
   hammer(arcs, [](const std::string& text) {
     ArcStudy study = delayStudy();
     parseStudy(text, "mutant.json", study);

@@ -1,4 +1,5 @@
-// The schemas of scene and study files say what the readers do: numbers just within their ranges are read, those just outside refused.
+// The schemas of scene and study files say what the readers do: numbers just within their
+// ranges are read, those just outside refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,8 +19,8 @@ namespace {
 
 using tests::contains;
 
-// What an object of the schema needs besides the key that is probed, and where in a scene it stands; by the object's name, or for a single key
-// by object.key.
+// What an object of the schema needs besides the key that is probed, and where in a scene it stands; by the object's
+// name, or for a single key by object.key.
 struct Place {
   std::map<std::string, std::string> members;
   std::string before, after;
@@ -33,10 +34,11 @@ const std::string kFingerStart = R"({"version": 1, "duration": 1, "bodies": [], 
 const std::string kTipStart = kFingerStart + R"({"position": [0, 0, 1], "shape": )";
 const std::string kSphere = R"({"type": "sphere", "radius": 0.02})";
 
-const std::string kBodyFirst = R"({"version": 1, "tick": 1e-5, "duration": 1, "bodies": [{"mass": 1, "shape": )" + kSphere + "}], ";
+const std::string kBodyFirst =
+    R"({"version": 1, "tick": 1e-5, "duration": 1, "bodies": [{"mass": 1, "shape": )" + kSphere + "}], ";
 
-const std::string kJointFirst = R"({"version": 1, "duration": 1, "bodies": [{"name": "b", "mass": 1, "shape": )" + kSphere +
-                                R"(}], "joints": [{"name": "j", "type": "pivot", "body": "b"}], )";
+const std::string kJointFirst = R"({"version": 1, "duration": 1, "bodies": [{"name": "b", "mass": 1, "shape": )" +
+                                kSphere + R"(}], "joints": [{"name": "j", "type": "pivot", "body": "b"}], )";
 
 const std::map<std::string, Place> kPlaces = {
     {"mesh.scale", {{{"type", "\"mesh\""}, {"file", "\"none.obj\""}, {"units", "\"mm\""}}, bodyWith(""), kBodyEnd}},
@@ -49,10 +51,14 @@ const std::map<std::string, Place> kPlaces = {
       R"({"version": 1, "duration": 1, "bodies": [{"mass": 1, "shapes": [{"pieces": )",
       "}]}]}"}},
     {"collides",
-     {{}, R"({"version": 1, "duration": 1, "bodies": [{"mass": 1, "shapes": [{"shape": )" + kSphere + R"(, "collides": )", "}]}]}"}},
+     {{},
+      R"({"version": 1, "duration": 1, "bodies": [{"mass": 1, "shapes": [{"shape": )" + kSphere + R"(, "collides": )",
+      "}]}]}"}},
     {"body", {{{"shape", kSphere}}, R"({"version": 1, "duration": 1, "bodies": [)", "]}"}},
     {"body_keyframe",
-     {{{"time", "0"}}, R"({"version": 1, "duration": 1, "bodies": [{"shape": )" + kSphere + R"(, "trajectory": {"keyframes": [)", "]}}]}"}},
+     {{{"time", "0"}},
+      R"({"version": 1, "duration": 1, "bodies": [{"shape": )" + kSphere + R"(, "trajectory": {"keyframes": [)",
+      "]}}]}"}},
     {"joint",
      {{{"type", "\"pivot\""}, {"body", "\"b\""}},
       R"({"version": 1, "duration": 1, "bodies": [{"name": "b", "mass": 1, "shape": )" + kSphere + R"(}], "joints": [)",
@@ -67,15 +73,19 @@ const std::map<std::string, Place> kPlaces = {
     {"capsule", {{{"type", "\"capsule\""}, {"radius", "0.01"}, {"length", "0.1"}}, bodyWith(""), kBodyEnd}},
     {"cylinder", {{{"type", "\"cylinder\""}, {"radius", "0.01"}, {"length", "0.1"}}, bodyWith(""), kBodyEnd}},
     {"cylinder_with_flat",
-     {{{"type", "\"cylinder_with_flat\""}, {"radius", "0.01"}, {"length", "0.1"}, {"flat_distance", "0.005"}}, bodyWith(""), kBodyEnd}},
+     {{{"type", "\"cylinder_with_flat\""}, {"radius", "0.01"}, {"length", "0.1"}, {"flat_distance", "0.005"}},
+      bodyWith(""),
+      kBodyEnd}},
     {"dish", {{{"type", "\"dish\""}}, R"({"version": 1, "duration": 1, "bodies": [{"shape": )", kBodyEnd}},
     {"mesh", {{{"type", "\"mesh\""}, {"lathe", "[[0, 0], [0.02, 0.01], [0, 0.03]]"}}, bodyWith(""), kBodyEnd}},
     {"convex", {{{"type", "\"convex\""}, {"file", "\"none.obj\""}, {"units", "\"mm\""}}, bodyWith(""), kBodyEnd}},
     {"finger", {{{"position", "[0, 0, 1]"}}, kFingerStart, "]}"}},
     {"sphere_tip", {{{"type", "\"sphere\""}}, kTipStart, kBodyEnd}},
     {"capsule_tip", {{{"type", "\"capsule\""}, {"radius", "0.01"}, {"half", "[0.01, 0, 0]"}}, kTipStart, kBodyEnd}},
-    {"pad_tip", {{{"type", "\"pad\""}, {"points", "[[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]]"}}, kTipStart, kBodyEnd}},
-    {"keyframe", {{{"time", "0"}, {"position", "[0, 0, 1]"}}, kFingerStart + R"({"trajectory": {"keyframes": [)", "]}}]}"}},
+    {"pad_tip",
+     {{{"type", "\"pad\""}, {"points", "[[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0], [0, 0, 0.01]]"}}, kTipStart, kBodyEnd}},
+    {"keyframe",
+     {{{"time", "0"}, {"position", "[0, 0, 1]"}}, kFingerStart + R"({"trajectory": {"keyframes": [)", "]}}]}"}},
     {"record", {{{"quantities", "[\"energy\"]"}}, kBodyFirst + R"("record": )", "}"}},
     {"expectation", {{{"quantity", "\"energy\""}, {"time", "0"}, {"value", "0"}}, kBodyFirst + R"("expect": [)", "]}"}},
 };
@@ -84,7 +94,8 @@ std::string sceneAt(const Place& place, const std::string& key, double value) {
   std::map<std::string, std::string> members = place.members;
   members[key] = fmt::format("{}", value);
   std::string object;
-  for (const auto& [name, text] : members) object += fmt::format("{}\"{}\": {}", object.empty() ? "" : ", ", name, text);
+  for (const auto& [name, text] : members)
+    object += fmt::format("{}\"{}\": {}", object.empty() ? "" : ", ", name, text);
   return place.before + "{" + object + "}" + place.after;
 }
 
@@ -122,7 +133,8 @@ TEST(SceneSchema, HasTheRangesOfTheReader) {
   forEachRange(readJson(PINCER_SOURCE_DIR "/docs/scene.schema.json", kSceneFile),
                [&](const std::string& def, const std::string& key, const JsonValue& number) {
                  const std::string place_name = kPlaces.contains(def + "." + key) ? def + "." + key : def;
-                 ASSERT_TRUE(kPlaces.contains(place_name)) << def << " has a number, but no place in a scene is known for it";
+                 ASSERT_TRUE(kPlaces.contains(place_name))
+                     << def << " has a number, but no place in a scene is known for it";
                  const Place& place = kPlaces.at(place_name);
                  const bool whole = number.at("type").text() == "integer";
                  const auto below = [&](double v) { return whole ? v - 1 : v - std::max(1e-12, 1e-9 * std::abs(v)); };
@@ -154,7 +166,8 @@ void expectSchemaOf(const Study& study) {
   const JsonValue file = parseJson(studyText(study), "study.json");
   const JsonValue schema = parseJson(SchemaWriter().schemaOf("a study", study), "schema");
   std::vector<std::string> keys = file.keys();
-  if (!file.find("session")) keys.push_back("session");  // written where it differs only, so that older protocols stay as they were
+  // written where it differs only, so that older protocols stay as they were
+  if (!file.find("session")) keys.push_back("session");
   EXPECT_EQ(keys, schema.at("properties").keys());
   for (const std::string& key : file.keys()) {
     const JsonValue* standard = schema.at("properties").at(key).find("default");
@@ -181,8 +194,10 @@ TEST(StudySchema, RefusesWithTheLineWhatIsOutOfRange) {
     return "";
   };
   EXPECT_EQ(said("{\"version\": 1,\n\"sphere_pickup\": {\n\"mass\": 75}}"),
-            "study.json:3: sphere_pickup.mass = 75 is out of range [0.001, 1]. It is in kilograms; the usual sphere has 0.075.");
-  EXPECT_TRUE(contains(said("{\"people\": {\n\"force_floor\": 7}}"), "study.json:2: people.force_floor = 7 is out of range [0.01, 1]"));
+            "study.json:3: sphere_pickup.mass = 75 is out of range [0.001, 1]. It is in kilograms; the usual sphere "
+            "has 0.075.");
+  EXPECT_TRUE(contains(said("{\"people\": {\n\"force_floor\": 7}}"),
+                       "study.json:2: people.force_floor = 7 is out of range [0.01, 1]"));
   EXPECT_TRUE(contains(said("{\"tasks\": [\"sphere-pick\"]}"), "Did you mean \"sphere-pickup\"?"));
 }
 

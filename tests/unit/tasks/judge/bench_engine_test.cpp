@@ -1,4 +1,5 @@
-// bench engine: frontiers and ratios, what a race makes of engines that go right and wrong, exact answers of its own scenes.
+// bench engine: frontiers and ratios, what a race makes of engines that go right
+// and wrong, exact answers of its own scenes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,8 +69,8 @@ TEST(Comparison, IsWithTheMostAccurateOfAllPeers) {
   const std::vector<Contestant> who = {{.engine = "pincer"}, {.engine = "A"}, {.engine = "B"}};
   RaceRun failed = runAt(2, 1e-3, kNoNumber, kNoNumber);
   failed.failure = "falls";
-  const Comparison c =
-      compareWithPeers(who, {runAt(0, 2e-3, 1e-4, 2), runAt(0, 1e-3, 1e-5, 2), runAt(1, 1e-3, 1e-3, 1), runAt(2, 1e-3, 1e-2, 8), failed});
+  const Comparison c = compareWithPeers(who, {runAt(0, 2e-3, 1e-4, 2), runAt(0, 1e-3, 1e-5, 2), runAt(1, 1e-3, 1e-3, 1),
+                                              runAt(2, 1e-3, 1e-2, 8), failed});
   ASSERT_TRUE(c.any);
   EXPECT_EQ(c.best.contestant, 1u);
   EXPECT_NEAR(*c.at_best.error, 0.1, 1e-12);  // 1000 us per s gives pincer 1e-4
@@ -84,7 +85,8 @@ TEST(Comparison, SaysWhenNothingCanBeCompared) {
   RaceRun failed = runAt(1, 1e-3, kNoNumber, kNoNumber);
   failed.failure = "falls";
   EXPECT_FALSE(compareWithPeers(who, {runAt(0, 1e-3, 1, 1), failed}).any);
-  const Comparison dear = compareWithPeers(who, {runAt(0, 1e-3, 1, 10), runAt(1, 1e-3, 0.5, 1)});  // neither as cheap nor as good
+  // neither as cheap nor as good
+  const Comparison dear = compareWithPeers(who, {runAt(0, 1e-3, 1, 10), runAt(1, 1e-3, 0.5, 1)});
   EXPECT_FALSE(dear.at_best.error);
   EXPECT_FALSE(dear.at_best.cost);
   EXPECT_TRUE(std::isnan(dear.share_of_goal));
@@ -126,10 +128,13 @@ TEST(Race, JudgesEachRunAndTimesThoseThatMoved) {
   Contestant elsewhere = fake("elsewhere", 0);
   elsewhere.meant = [](const BenchWorld&) { return false; };  // has no run at all
   Contestant broken = fake("broken", 0);
-  broken.make = [](const BenchWorld&, const BenchStep&) -> std::unique_ptr<BenchEngine> { throw InputError("no such shape"); };
+  broken.make = [](const BenchWorld&, const BenchStep&) -> std::unique_ptr<BenchEngine> {
+    throw InputError("no such shape");
+  };
   MeasureContext context;
   const auto runs =
-      race(glide(), {fake("right", 0), fake("near", 0.25), fake("stuck", -1), fake("lost", kNoNumber), picky, elsewhere, broken},
+      race(glide(),
+           {fake("right", 0), fake("near", 0.25), fake("stuck", -1), fake("lost", kNoNumber), picky, elsewhere, broken},
            {.rounds = 1}, context);
   ASSERT_EQ(runs.size(), 11u);
   EXPECT_EQ(runs[0].steps, 100);
@@ -199,9 +204,10 @@ TEST(BenchScenes, AreMadeOfWholeSteps) {
   EXPECT_GE(names.size(), 30u);
 }
 
-// Two pads on sliders hold a rod by two contacts each: what the four ask of the rod contradicts itself around the loop, and it crept by 3.4e-5 um in
-// these 3.5 s until all four were fitted together. Then it went to and fro by 1e-6 um for ever: the impulses of a tick in which it was still slowing
-// down by 1e-13 m/s fitted the next one well enough, and kept, turned it round. Now the bound that is promised for a minute holds in these seconds.
+// Two pads on sliders hold a rod by two contacts each: what the four ask of the rod contradicts itself around the loop,
+// and it crept by 3.4e-5 um in these 3.5 s until all four were fitted together. Then it went to and fro by 1e-6 um for
+// ever: the impulses of a tick in which it was still slowing down by 1e-13 m/s fitted the next one well enough, and
+// kept, turned it round. Now the bound that is promised for a minute holds in these seconds.
 TEST(BenchScenes, ACapsuleBetweenPadsDoesntCreep) {
   for (const BenchScene& scene : benchPinchScenes(false)) {
     if (!scene.name.starts_with("more/capsule")) continue;
@@ -216,8 +222,10 @@ TEST(BenchScenes, ACapsuleBetweenPadsDoesntCreep) {
       EXPECT_EQ(verdict.failure, "");
       way[k / 5000 - 3] = verdict.error * 3.5;  // of the scene's 4 s
     }
-    EXPECT_LT(way[1], 1e-7) << scene.name;  // a tenth of what is promised for a minute: within the solver's tolerance it settles once
-    EXPECT_LT(std::abs(way[1] - way[0]), 1e-10) << scene.name;  // round-off of 5000 ticks: a place of 50 mm has a last bit of 7e-12 um
+    // a tenth of what is promised for a minute: within the solver's tolerance it settles once
+    EXPECT_LT(way[1], 1e-7) << scene.name;
+    // round-off of 5000 ticks: a place of 50 mm has a last bit of 7e-12 um
+    EXPECT_LT(std::abs(way[1] - way[0]), 1e-10) << scene.name;
   }
 }
 
@@ -252,7 +260,8 @@ TEST(ExactTipping, BeginsLikeCosh) {
 TEST(ExactThrownBall, IsTheBowlingBallWithoutSpin) {
   const exact::SpinningSlide ball{0.02, 0.2, 9.81, {1, 0, 0}, {0, 0, 0}};
   const exact::SlideToRoll bowling{1, 0.2, 9.81};
-  for (const double t : {0.05, 0.14, 0.2, 1.0}) EXPECT_NEAR((ball.position(t) - Vec3(bowling.position(t), 0, 0)).norm(), 0, 1e-14);
+  for (const double t : {0.05, 0.14, 0.2, 1.0})
+    EXPECT_NEAR((ball.position(t) - Vec3(bowling.position(t), 0, 0)).norm(), 0, 1e-14);
 }
 
 // About the line on which it touches, angular momentum is kept: m (r v + 2/5 r^2 w), whatever the friction.
@@ -270,7 +279,8 @@ TEST(ExactBounces, GoToTheRestitutionsHeightsAndKeepRollingOnes) {
   EXPECT_NEAR(dead.position(fall * (1 + 0.8)).z(), -0.5 + 0.64 * 0.5, 1e-14);
   const exact::ObliqueBounces rolling{0.02, 0.2, 0.8, 9.81, 0.5, {0.6, 0, 0}, {0, 30, 0}};  // doesn't slip: no friction
   EXPECT_NEAR(rolling.position(1.5).x(), 0.9, 1e-14);
-  const exact::ObliqueBounces slipping{0.02, 0.2, 0.8, 9.81, 0.5, {5, 0, 0}, {0, 0, 0}};  // slips through: mu (1 + e) of the normal speed
+  // slips through: mu (1 + e) of the normal speed
+  const exact::ObliqueBounces slipping{0.02, 0.2, 0.8, 9.81, 0.5, {5, 0, 0}, {0, 0, 0}};
   EXPECT_NEAR(slipping.position(2 * fall).x(), 5 * fall + (5 - 0.2 * 1.8 * 9.81 * fall) * fall, 1e-13);
 }
 

@@ -1,4 +1,5 @@
-// `pincer bench grasp`: its quick measurements keep their promises wherever the tests run; those of time are left to the command.
+// `pincer bench grasp`: its quick measurements keep their promises wherever the tests
+// run; those of time are left to the command.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -9,14 +10,16 @@ namespace pincer::tasks {
 namespace {
 
 TEST(GraspBench, QuickMeasurementsKeepTheirPromises) {
-  const std::set<std::string> quick = {"hold/slip-onset", "hold/handover", "soft/limit-surface", "soft/rolling", "methods/friction"};
+  const std::set<std::string> quick = {"hold/slip-onset", "hold/handover", "soft/limit-surface", "soft/rolling",
+                                       "methods/friction"};
   std::size_t seen = 0;
   MeasureContext context;
   for (const Measurement& measurement : graspMeasurements({})) {
     if (!quick.contains(measurement.name)) continue;
     ++seen;
     for (const Record& record : measurement.run(context)) {
-      EXPECT_TRUE(record.ok) << measurement.name << ": " << record.metric << " = " << record.value << " " << record.unit;
+      EXPECT_TRUE(record.ok) << measurement.name << ": " << record.metric << " = " << record.value << " "
+                             << record.unit;
     }
   }
   EXPECT_EQ(seen, quick.size());
@@ -24,7 +27,8 @@ TEST(GraspBench, QuickMeasurementsKeepTheirPromises) {
 
 TEST(GraspBench, NamesAreUnique) {
   std::set<std::string> names;
-  for (const Measurement& measurement : graspMeasurements({})) EXPECT_TRUE(names.insert(measurement.name).second) << measurement.name;
+  for (const Measurement& measurement : graspMeasurements({}))
+    EXPECT_TRUE(names.insert(measurement.name).second) << measurement.name;
 }
 
 }  // namespace

@@ -12,12 +12,15 @@ namespace {
 TEST(Stress, AFewWorldsOfEachClassHold) {
   for (const Measurement& measurement : stressMeasurements({.first_seed = 1, .seeds = 3})) {
     MeasureContext context;
-    for (const Record& record : measurement.run(context)) EXPECT_TRUE(record.ok) << measurement.name << ": " << record.metric;
+    for (const Record& record : measurement.run(context))
+      EXPECT_TRUE(record.ok) << measurement.name << ": " << record.metric;
   }
 }
 
-// Fingers that flung a body through the floor within a tick, a needle that friction spun up until it gained energy, and one that a single
-// hit spun up; one that was thrown by what a body 0.6 mm away asked for; bodies that spin and land, pushed up out of the floor; light bodies between heavy ones, pushed down into it; what flew on with an impulse of 1e-22 N s still stuck, remembered its flight as slip, and was pulled back at 10 m/s when it landed.
+// Fingers that flung a body through the floor within a tick, a needle that friction spun up until it gained energy, and
+// one that a single hit spun up; one that was thrown by what a body 0.6 mm away asked for; bodies that spin and land,
+// pushed up out of the floor; light bodies between heavy ones, pushed down into it; what flew on with an impulse of
+// 1e-22 N s still stuck, remembered its flight as slip, and was pulled back at 10 m/s when it landed.
 TEST(Stress, WorldsThatOnceFailedHold) {
   const auto run = [](std::string_view name, std::uint64_t seed) {
     for (const Measurement& measurement : stressMeasurements({.first_seed = seed, .seeds = 1})) {
@@ -28,7 +31,8 @@ TEST(Stress, WorldsThatOnceFailedHold) {
   };
   for (const std::uint64_t seed : {31, 125, 164, 211, 244}) run("stress/teleport", seed);
   run("stress/stiffness", 50);
-  for (const std::uint64_t seed : {32, 75, 196, 249, 564, 2011, 2153, 3672, 5976, 6398, 7575}) run("stress/inertia", seed);
+  for (const std::uint64_t seed : {32, 75, 196, 249, 564, 2011, 2153, 3672, 5976, 6398, 7575})
+    run("stress/inertia", seed);
   for (const std::uint64_t seed : {127, 475, 493, 725, 900, 5707}) run("stress/spin", seed);
   run("stress/redundant", 157);
   for (const std::uint64_t seed : {212, 409, 522, 740, 911, 5511, 7757}) run("stress/overlap", seed);
@@ -54,7 +58,8 @@ TEST(Stress, ChecksNameABodyBelowTheFloorOrNotFinite) {
   engine::WorldBuilder builder(engine::WorldOptions{});
   builder.addBody({"ball", contact::Sphere{0.02}, true, 0.1, {}});
   const engine::WorldModel model = builder.build();
-  engine::WorldState state = engine::makeState(model, {{{Quat::Identity(), {0, 0, 0.02}}, Vec3::Zero(), Vec3::Zero()}}, {});
+  engine::WorldState state =
+      engine::makeState(model, {{{Quat::Identity(), {0, 0, 0.02}}, Vec3::Zero(), Vec3::Zero()}}, {});
   EXPECT_EQ(faultOfState(model, state), "");
   state.bodies[0].X_WI.p.z() = -0.001;
   EXPECT_NE(faultOfState(model, state), "");

@@ -96,7 +96,9 @@ TEST(FlatBelief, FindsTheFlatFromExactReadings) {
     for (std::size_t i = 0; i < 2; ++i) {
       const double at = pinch + (i == 0 ? std::numbers::pi : 0);
       double rho = model.radius + model.tip_radius;  // as near as the tip comes
-      const auto gap = [&] { return cutCircle(model, theta, rho * Vec2(std::cos(at), std::sin(at))).distance - model.tip_radius; };
+      const auto gap = [&] {
+        return cutCircle(model, theta, rho * Vec2(std::cos(at), std::sin(at))).distance - model.tip_radius;
+      };
       for (int k = 0; k < 50; ++k) rho -= gap();
       percept[i].p_felt = rho * Vec2(std::cos(at), std::sin(at));
       percept[i].pad = i == 0 ? std::numbers::pi : 0;
@@ -111,7 +113,8 @@ TEST(FlatBelief, FindsTheFlatFromExactReadings) {
 SensingLimits sharpSenses() {
   SensingLimits limits;
   limits.tactor_sd = limits.orientation_sd = limits.direction_sd = limits.force_sd = 0;
-  limits.placement_sd = limits.placement_between_sd = limits.span_sd = limits.target_shared_sd = limits.target_trial_sd = 0;
+  limits.placement_sd = limits.placement_between_sd = limits.span_sd = limits.target_shared_sd =
+      limits.target_trial_sd = 0;
   return limits;
 }
 
@@ -135,7 +138,8 @@ TEST(CylinderAlignment, IsDoneWellBySharpSenses) {
   ASSERT_EQ(sink.trials.size(), 2u);
   for (const TrialRecord& trial : sink.trials) {
     EXPECT_EQ(trial.outcome, "success");
-    EXPECT_LT(std::abs(trial.error), 20 * kDeg) << trial.start_angle;  // far less than the 45 .. 180 degrees of the start
+    // far less than the 45 .. 180 degrees of the start
+    EXPECT_LT(std::abs(trial.error), 20 * kDeg) << trial.start_angle;
     EXPECT_GT(trial.flat_time, 0);
   }
   EXPECT_FALSE(sink.readings.empty());

@@ -1,7 +1,8 @@
-// Damaged sessions: whatever stands in the file, reporting, exporting, replaying and resuming it succeed or say what is wrong (InputError).
+// Damaged sessions: whatever stands in the file, reporting, exporting, replaying and resuming it
+// succeed or say what is wrong (InputError).
 //
-// Every column of every table is damaged in turn, tables and columns are taken away, bytes are turned, the protocol's numbers are changed.
-// PINCER_DAMAGE=N repeats it N times with other random numbers (default 1).
+// Every column of every table is damaged in turn, tables and columns are taken away, bytes are turned, the protocol's
+// numbers are changed. PINCER_DAMAGE=N repeats it N times with other random numbers (default 1).
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -58,7 +59,8 @@ class Damage {
   std::string copy() const { return dir_ / "damaged.db"; }
 
   // A copy, damaged by `damage`, read in every way. `what` was done, for whoever reads that it failed.
-  void tryAll(const std::string& original, const std::string& what, const std::function<void(const std::string&)>& damage) {
+  void tryAll(const std::string& original, const std::string& what,
+              const std::function<void(const std::string&)>& damage) {
     for (const char* suffix : {"", "-wal", "-shm", "-journal", "-lock"}) std::filesystem::remove(copy() + suffix);
     std::filesystem::copy_file(original, copy());
     damage(copy());
@@ -67,7 +69,8 @@ class Damage {
     attempt("report", [&] { report(); });
     attempt("export", [&] { exportCsv(SessionReader(copy()), dir_ / "csv", {}); });
     attempt("export --bids", [&] { exportBids(SessionReader(copy()), dir_ / "bids"); });
-    attempt("replay", [&] { replaySession(SessionReader(copy()), {.other_version = true}, kUndisturbed, {}, doNothing); });
+    attempt("replay",
+            [&] { replaySession(SessionReader(copy()), {.other_version = true}, kUndisturbed, {}, doNothing); });
     attempt("run --resume", [&] { resume(); });
   }
 
@@ -201,9 +204,10 @@ TEST(DamagedSession, AnyValueOfAnyColumnIsReadOrRefused) {
       for (const std::string& table : tablesOf(original)) {
         for (const std::string& column : namesBy(original, "SELECT name FROM pragma_table_info('" + table + "')")) {
           const std::string value = kValues[turn++ % std::size(kValues)];
-          const std::string sql =
-              "UPDATE " + table + " SET \"" + column + "\" = " + value + " WHERE rowid = (SELECT min(rowid) FROM " + table + ")";
-          damage.tryAll(original, sql, [&](const std::string& path) { Database(path, Database::Mode::kWrite).run(sql); });
+          const std::string sql = "UPDATE " + table + " SET \"" + column + "\" = " + value +
+                                  " WHERE rowid = (SELECT min(rowid) FROM " + table + ")";
+          damage.tryAll(original, sql,
+                        [&](const std::string& path) { Database(path, Database::Mode::kWrite).run(sql); });
         }
       }
     }
@@ -217,12 +221,14 @@ TEST(DamagedSession, MissingTablesAndColumnsAndDoubledRowsAreNamed) {
   std::mt19937 random(3);
   for (const std::string& original : {damage.pickups(), damage.hands(), damage.study()}) {
     for (const std::string& table : tablesOf(original)) {
-      for (const std::string& sql : {"DROP TABLE " + table, "DELETE FROM " + table, "ALTER TABLE " + table + " RENAME TO other",
-                                     "CREATE TABLE twin AS SELECT * FROM " + table + "; DROP TABLE " + table + "; CREATE TABLE " + table +
-                                         " AS SELECT * FROM twin UNION ALL SELECT * FROM twin"}) {
+      for (const std::string& sql :
+           {"DROP TABLE " + table, "DELETE FROM " + table, "ALTER TABLE " + table + " RENAME TO other",
+            "CREATE TABLE twin AS SELECT * FROM " + table + "; DROP TABLE " + table + "; CREATE TABLE " + table +
+                " AS SELECT * FROM twin UNION ALL SELECT * FROM twin"}) {
         damage.tryAll(original, sql, [&](const std::string& path) { Database(path, Database::Mode::kWrite).run(sql); });
       }
-      const auto columns = namesBy(original, "SELECT name FROM pragma_table_info('" + table + "') WHERE name <> 'trial'");
+      const auto columns =
+          namesBy(original, "SELECT name FROM pragma_table_info('" + table + "') WHERE name <> 'trial'");
       const std::string sql = "ALTER TABLE " + table + " DROP COLUMN \"" + columns[random() % columns.size()] + "\"";
       damage.tryAll(original, sql, [&](const std::string& path) { Database(path, Database::Mode::kWrite).run(sql); });
     }
@@ -238,8 +244,10 @@ TEST(DamagedSession, AnyTurnedByteAndAnyLengthIsReadOrRefused) {
     damage.tryAll(original, "random bytes, case " + std::to_string(k), [&](const std::string& path) {
       std::string bytes = readFile(path);
       if (k % 4 == 0) bytes.resize(random() % bytes.size());
-      for (std::size_t n = random() % 20; n > 0 && !bytes.empty(); --n) bytes[random() % bytes.size()] = static_cast<char>(random());
-      if (k % 4 == 1) std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(random() % (bytes.size() / 2)), bytes.size() / 8, '\0');
+      for (std::size_t n = random() % 20; n > 0 && !bytes.empty(); --n)
+        bytes[random() % bytes.size()] = static_cast<char>(random());
+      if (k % 4 == 1)
+        std::fill_n(bytes.begin() + static_cast<std::ptrdiff_t>(random() % (bytes.size() / 2)), bytes.size() / 8, '\0');
       std::ofstream(path, std::ios::binary) << bytes;
     });
   }
@@ -254,21 +262,22 @@ TEST(DamagedSession, AnyNumberOfTheProtocolIsReadOrRefused) {
     const std::string original = k % 2 ? damage.pickups() : damage.study();
     std::string protocol = SessionReader(original).info().protocol_json;
     std::vector<std::smatch> found;
-    for (auto at = std::sregex_iterator(protocol.begin(), protocol.end(), number); at != std::sregex_iterator(); ++at) found.push_back(*at);
+    for (auto at = std::sregex_iterator(protocol.begin(), protocol.end(), number); at != std::sregex_iterator(); ++at)
+      found.push_back(*at);
     const std::smatch& which = found[random() % found.size()];
     const char* values[] = {"0", "-1", "1e300", "0.5", "1e-300", "\"x\"", "[]", "null", "18446744073709551616"};
     protocol.replace(static_cast<std::size_t>(which.position()), static_cast<std::size_t>(which.length()),
                      values[random() % std::size(values)]);
-    damage.tryAll(
-        original,
-        protocol.substr(static_cast<std::size_t>(which.position()) - std::min<std::size_t>(40, static_cast<std::size_t>(which.position())),
-                        60),
-        [&](const std::string& path) {
-          Database database(path, Database::Mode::kWrite);
-          Statement update(database, "UPDATE session SET protocol_json = ?");
-          update.bind(0, std::string_view(protocol));
-          update.step();
-        });
+    damage.tryAll(original,
+                  protocol.substr(static_cast<std::size_t>(which.position()) -
+                                      std::min<std::size_t>(40, static_cast<std::size_t>(which.position())),
+                                  60),
+                  [&](const std::string& path) {
+                    Database database(path, Database::Mode::kWrite);
+                    Statement update(database, "UPDATE session SET protocol_json = ?");
+                    update.bind(0, std::string_view(protocol));
+                    update.step();
+                  });
   }
   EXPECT_EQ(damage.cases, 30 * rounds());
 }
@@ -282,9 +291,9 @@ TEST(DamagedSession, NamesTheCellThatIsWrong) {
     Database(damage.copy(), Database::Mode::kWrite).run(sql);
     return tests::errorOf([&] { exportCsv(SessionReader(damage.copy()), damage.copy() + ".csv", {}); });
   };
-  EXPECT_TRUE(contains(
-      errorAfter(damage.pickups(), "UPDATE session SET seed = 'seven'"),
-      "damaged.db: table session, row 1: seed = \"seven\" isn't a whole number in [0, 18446744073709551615], as text. The file is"));
+  EXPECT_TRUE(contains(errorAfter(damage.pickups(), "UPDATE session SET seed = 'seven'"),
+                       "damaged.db: table session, row 1: seed = \"seven\" isn't a whole number in [0, "
+                       "18446744073709551615], as text. The file is"));
   EXPECT_TRUE(contains(errorAfter(damage.pickups(), "UPDATE trial SET mu_s = -0.3 WHERE trial = 1"),
                        "table trial, row 2: mu_s = -0.3 isn't a number in [0, 1000000]. "));
   EXPECT_TRUE(contains(errorAfter(damage.pickups(), "UPDATE trial SET training = 'no' WHERE trial = 0"),
@@ -295,8 +304,8 @@ TEST(DamagedSession, NamesTheCellThatIsWrong) {
 TEST(DamagedSession, ATrialOutsideThePlanIsNamed) {
   Damage damage;
   Database(damage.pickups(), Database::Mode::kWrite).run("UPDATE trial SET trial = 999 WHERE trial = 1");
-  const std::string error =
-      tests::errorOf([&] { replaySession(SessionReader(damage.pickups()), {.trial = 999}, kUndisturbed, {}, doNothing); });
+  const std::string error = tests::errorOf(
+      [&] { replaySession(SessionReader(damage.pickups()), {.trial = 999}, kUndisturbed, {}, doNothing); });
   EXPECT_TRUE(contains(error, "trial 1000 isn't one of its plan, which has trials 1 to 2")) << error;
   const std::string resumed = tests::errorOf([&] { resumeManipulationSession({}, damage.pickups(), kStopped, {}); });
   EXPECT_TRUE(contains(resumed, "trial 1000 isn't one of its plan")) << resumed;

@@ -38,7 +38,9 @@ TEST(FindingWords, SayTheEffectItsIntervalAndHowSure) {
   std::vector<std::pair<int, int>> people(11, {3, 2});
   people.push_back({2, 2});
   const std::string words = findingWords(pickups(people)).at(0);
-  EXPECT_TRUE(contains(words, "12 simulated people. Squeezes per sphere picked up: 2.92 by force only, 2.00 with the display")) << words;
+  EXPECT_TRUE(
+      contains(words, "12 simulated people. Squeezes per sphere picked up: 2.92 by force only, 2.00 with the display"))
+      << words;
   EXPECT_TRUE(contains(words, "difference -0.92 (95 % interval -1.10 to -0.73), less for 11 of 12 people")) << words;
   EXPECT_TRUE(contains(words, "less than 1 in 1000 such studies")) << words;
   EXPECT_TRUE(contains(words, "So the display lowers it.")) << words;

@@ -1,4 +1,5 @@
-// Do the published findings follow: known answers and counts, the verdicts that belong to them, and many sessions that go on where they were left.
+// Do the published findings follow: known answers and counts, the verdicts that belong to them, and many
+// sessions that go on where they were left.
 #include "pincer/tasks/lab/findings/findings.h"
 
 #include <fmt/format.h>
@@ -66,7 +67,8 @@ std::string verdictOn(const ClaimTable& table, const std::string& id) {
   return verdictOn(*row.claim, row.evidence);
 }
 
-// Published: 61 +- 15 ms whole, 132 +- 15 ms front end. 61 +- 24.8 ms hits the one and is narrow enough (24.8 < 30), 264 +- 24.8 ms is twice the other.
+// Published: 61 +- 15 ms whole, 132 +- 15 ms front end. 61 +- 24.8 ms hits the one and is narrow enough (24.8
+// < 30), 264 +- 24.8 ms is twice the other.
 TEST(Claims, AFigureFollowsWhereStudiesHitIt) {
   const TemporaryDirectory dir;
   const ClaimTable table = tableOf(dir, {{51, 61, 71}, {274, 254, 264}}, 4);
@@ -81,7 +83,8 @@ TEST(Claims, AFigureFollowsWhereStudiesHitIt) {
   EXPECT_EQ(verdictOn(table, "F48"), "-");
 }
 
-// Noisy people don't follow the more easily: 61 +- 50 ms hits in every study, but is three times as wide as the published interval.
+// Noisy people don't follow the more easily: 61 +- 50 ms hits in every study, but is three
+// times as wide as the published interval.
 TEST(Claims, AFigureOfNoisyPeopleOnlyLooksTheSame) {
   const TemporaryDirectory dir;
   EXPECT_EQ(verdictOn(tableOf(dir, {{41, 61, 81}, {132, 132, 132}}, 5), "F35"), "would mostly look the same");
@@ -93,8 +96,8 @@ TEST(Claims, HaveNoVerdictOnAFewStudiesNorAFigureWherePeopleGuessed) {
   EXPECT_EQ(verdictOn(tableOf(guessed, {{51, 61, 71}, {51, 61, 71}, true}, 4), "F35"), "does not follow: no threshold");
 }
 
-// Everybody notices the front end's delay 1 ms later, though people differ by 10: within people certain (t = 17), by the published unpaired test not
-// (t = 0.12).
+// Everybody notices the front end's delay 1 ms later, though people differ by 10: within people certain (t = 17), by
+// the published unpaired test not (t = 0.12).
 TEST(Claims, AnOrderIsJudgedByThePublishedTestWithAPairedOneBeside) {
   const TemporaryDirectory dir, clear, reversed;
   const Thresholds later{{51, 61, 71}, {52, 62.1, 71.9}};
@@ -170,7 +173,8 @@ TEST(Claims, RefusePartsOfTwoCommits) {
 }
 
 // People who need `force` squeezes per sphere without the display and `cld` with it, all in the same time.
-std::string writePickups(const std::string& path, const std::vector<int>& force, const std::vector<int>& cld, bool whole = true) {
+std::string writePickups(const std::string& path, const std::vector<int>& force, const std::vector<int>& cld,
+                         bool whole = true) {
   SessionInfo info;
   info.task = "manipulation";
   info.participants_hash = "0123456789abcdef";
@@ -200,15 +204,18 @@ const FindingResult& resultOf(const VariantResult& variant, const std::string& k
 
 std::string verdictOn(const VariantResult& variant, const std::string& key) {
   const auto& measures = findingMeasures();
-  const auto measure = std::find_if(measures.begin(), measures.end(), [&](const FindingMeasure& m) { return m.key == key; });
+  const auto measure =
+      std::find_if(measures.begin(), measures.end(), [&](const FindingMeasure& m) { return m.key == key; });
   return verdictOn(*measure, resultOf(variant, key));
 }
 
-// Fewer squeezes by 2, 1, 2, 1: t = -1.5 / (0.577 / 2) = -5.2, p = 0.014. Of five such experiments, five are certainly more than half.
+// Fewer squeezes by 2, 1, 2, 1: t = -1.5 / (0.577 / 2) = -5.2, p = 0.014. Of five such
+// experiments, five are certainly more than half.
 TEST(Findings, FollowWhereMostExperimentsShowThem) {
   const TemporaryDirectory dir;
   std::vector<std::string> sessions;
-  for (int e = 0; e < 5; ++e) sessions.push_back(writePickups(dir / fmt::format("{}.db", e), {3, 4, 5, 6}, {1, 3, 3, 5}));
+  for (int e = 0; e < 5; ++e)
+    sessions.push_back(writePickups(dir / fmt::format("{}.db", e), {3, 4, 5, 6}, {1, 3, 3, 5}));
   sessions.push_back(writePickups(dir / "unfinished.db", {9, 9, 9, 9}, {1, 1, 1, 2}, false));
   const VariantResult primary = judgeVariant(findingsVariants().front(), sessions);
   EXPECT_EQ(primary.hash, "0123456789abcdef");
@@ -226,7 +233,8 @@ TEST(Findings, FollowWhereMostExperimentsShowThem) {
 TEST(Findings, DoNotFollowWhereTheyGoTheOtherWay) {
   const TemporaryDirectory dir;
   std::vector<std::string> sessions;
-  for (int e = 0; e < 5; ++e) sessions.push_back(writePickups(dir / fmt::format("{}.db", e), {1, 3, 3, 5}, {3, 4, 5, 6}));
+  for (int e = 0; e < 5; ++e)
+    sessions.push_back(writePickups(dir / fmt::format("{}.db", e), {1, 3, 3, 5}, {3, 4, 5, 6}));
   const VariantResult primary = judgeVariant(findingsVariants().front(), sessions);
   EXPECT_EQ(resultOf(primary, "tries").significant_t, 5);
   EXPECT_EQ(verdictOn(primary, "tries"), "does not follow");
@@ -249,8 +257,9 @@ TEST(SessionRuns, TakeWhatIsWholeAndGoOnWithWhatIsBegun) {
   std::vector<std::string> ran;
   std::vector<SessionRun> runs;
   for (const char* name : {"whole", "begun", "new"}) {
-    runs.push_back(
-        {dir / name, info, [&ran, name](bool resume, const ShareDone&) { ran.push_back(name + std::string(resume ? " on" : "")); }});
+    runs.push_back({dir / name, info, [&ran, name](bool resume, const ShareDone&) {
+                      ran.push_back(name + std::string(resume ? " on" : ""));
+                    }});
   }
   SessionWriter::create(dir / "whole", info).close();
   SessionWriter::create(dir / "begun", info).abort("killed");

@@ -21,7 +21,8 @@ namespace {
 
 using tests::TemporaryDirectory;
 
-// Somebody at a window: lowers the finger at each tone, strokes or looks for the ring, raises it, and presses keys. In virtual time.
+// Somebody at a window: lowers the finger at each tone, strokes or looks for the ring,
+// raises it, and presses keys. In virtual time.
 struct MousePerson {
   std::atomic<bool> leaves{false};
   std::int64_t leaves_at_tick = -1;  // of the last trial that began; -1: stays
@@ -113,7 +114,9 @@ StudySession sessionOf(const std::string& task, const Study& study, const std::s
   return session;
 }
 
-ReplayResult replayed(const std::string& path) { return replaySession(SessionReader(path), {}, std::atomic<bool>{false}); }
+ReplayResult replayed(const std::string& path) {
+  return replaySession(SessionReader(path), {}, std::atomic<bool>{false});
+}
 
 std::string differenceIn(const ReplayResult& result) { return result.first ? result.first->what : ""; }
 
@@ -146,7 +149,9 @@ TEST(FingerPerson, AnswersByKeysAndComesAgainToTheBit) {
     EXPECT_GT(r.contact_share, 0.3);
   }
   const std::vector<EventRecord> events = reader.events(0);
-  EXPECT_EQ(std::count_if(events.begin(), events.end(), [](const EventRecord& e) { return e.kind == "key" && e.detail == "Enter"; }), 5);
+  EXPECT_EQ(std::count_if(events.begin(), events.end(),
+                          [](const EventRecord& e) { return e.kind == "key" && e.detail == "Enter"; }),
+            5);
   const ReplayResult result = replayed(session.path);
   EXPECT_EQ(differenceIn(result), "");
   EXPECT_EQ(result.trials, 2);
@@ -159,7 +164,8 @@ TEST(FingerPerson, SeesNothingButThePadInACountedTrial) {
   MousePerson person;
   const TemporaryDirectory dir;
   const std::atomic<bool> no{false};
-  runStudySession(experiment, sessionOf("backlash-discrimination", briefBacklash(), dir / "session.db", person), no, {});
+  runStudySession(experiment, sessionOf("backlash-discrimination", briefBacklash(), dir / "session.db", person), no,
+                  {});
   EXPECT_TRUE(person.last_told.hidden);
   EXPECT_TRUE(person.last_told.shows_pad);
 }
@@ -177,7 +183,8 @@ TEST(FingerPerson, APlaceIsKeptAndFoundAgain) {
   runStudySession(experiment, session, no, {});
   const std::vector<ResponseRecord> responses = SessionReader(session.path).responses();
   ASSERT_EQ(responses.size(), 2u);
-  for (const ResponseRecord& r : responses) EXPECT_LT(std::abs(r.answer_value - r.level), 0.5e-3);  // the ring's 0.25 mm, twice
+  // the ring's 0.25 mm, twice
+  for (const ResponseRecord& r : responses) EXPECT_LT(std::abs(r.answer_value - r.level), 0.5e-3);
   EXPECT_EQ(differenceIn(replayed(session.path)), "");
 }
 
@@ -241,7 +248,8 @@ TEST(StudyReplay, SimulatedAnswersComeAgainToTheBit) {
   ArcExperiment experiment(briefBacklash(), {}, 10);
   StudySession session;
   session.path = dir / "session.db";
-  session.info = studySessionInfo("backlash-discrimination", 1, studyJson(briefBacklash()), participantsJson(briefBacklash()), {}, 100);
+  session.info = studySessionInfo("backlash-discrimination", 1, studyJson(briefBacklash()),
+                                  participantsJson(briefBacklash()), {}, 100);
   const std::atomic<bool> no{false};
   runStudySession(experiment, session, no, {});
   const ReplayResult result = replayed(session.path);

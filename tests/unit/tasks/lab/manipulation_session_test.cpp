@@ -62,7 +62,8 @@ TEST(ManipulationFile, NamesWhatIsWrong) {
     }
   };
   EXPECT_NE(said(R"({"version": 1, "participant": 3})").find("participants"), std::string::npos);  // did you mean
-  EXPECT_NE(said("{\"version\": 1,\n\"sphere_pickup\": {\"mass\": \"heavy\"}}").find("study.json:2"), std::string::npos);
+  EXPECT_NE(said("{\"version\": 1,\n\"sphere_pickup\": {\"mass\": \"heavy\"}}").find("study.json:2"),
+            std::string::npos);
   EXPECT_NE(said(R"({"version": 1, "people": {"force_floor": -1}})").find("force_floor = -1"), std::string::npos);
   EXPECT_NE(said(R"({"version": 2})").find("version"), std::string::npos);
 }
@@ -72,7 +73,8 @@ TEST(ManipulationSession, GoesOnToTheSameEnd) {
   const tests::TemporaryDirectory directory;
   const auto options = quickSession(3);
   std::atomic<bool> interrupted{false};
-  runManipulationSession(options, directory / "part.db", interrupted, [&](const TrialProgress& at) { interrupted = at.done == 1; });
+  runManipulationSession(options, directory / "part.db", interrupted,
+                         [&](const TrialProgress& at) { interrupted = at.done == 1; });
   EXPECT_EQ(SessionReader(directory / "part.db").trials().size(), 1u);
   EXPECT_EQ(resumeManipulationSession({}, directory / "part.db", kGoOn, {}).trials, 3u);
   runManipulationSession(options, directory / "whole.db", kGoOn, {});
@@ -87,7 +89,8 @@ TEST(ManipulationSession, GoesOnToTheSameEnd) {
   EXPECT_THROW(resumeManipulationSession({}, directory / "part.db", kGoOn, {}), InputError);
 }
 
-// Killed at moments that the clock chooses; each time what had been reported as finished is there, and the session goes on.
+// Killed at moments that the clock chooses; each time what had been reported as
+// finished is there, and the session goes on.
 TEST(ManipulationSession, LosesNoFinishedTrialWhenKilled) {
   const tests::TemporaryDirectory directory;
   const std::string path = directory / "killed.db";
@@ -140,13 +143,14 @@ TEST(Replay, IsTheSameToTheBitAndNamesTheFirstDifference) {
 TEST(SessionStore, ResumingARunningSessionEndsWithExitCode3) {
   const tests::TemporaryDirectory dir;
   std::filesystem::create_directory(dir / "out");
-  tests::runPincer(
-      {"run", "sphere-pickup", "--repetitions", "1", "--friction", "0.9", "--condition", "force", "--no-report", "--out", dir / "out"});
+  tests::runPincer({"run", "sphere-pickup", "--repetitions", "1", "--friction", "0.9", "--condition", "force",
+                    "--no-report", "--out", dir / "out"});
   Database(dir / "out/session.db", Database::Mode::kWrite).run("UPDATE session SET state = 'running'");
   const SessionLock held(dir / "out/session.db");
   const tests::AppResult result = tests::runPincer({"run", "sphere-pickup", "--resume", "--out", dir / "out"});
   EXPECT_EQ(result.exit_code, kExitBadInput);
-  EXPECT_TRUE(tests::contains(result.error, "is being written by process " + std::to_string(::getpid()))) << result.error;
+  EXPECT_TRUE(tests::contains(result.error, "is being written by process " + std::to_string(::getpid())))
+      << result.error;
 }
 
 TEST(Replay, OfAnotherVersionIsRefusedByName) {
@@ -157,15 +161,17 @@ TEST(Replay, OfAnotherVersionIsRefusedByName) {
   Database(path, Database::Mode::kWrite).run("UPDATE session SET sources = '000000000000', commit_id = 'deadbeef0000'");
   const tests::AppResult refused = tests::runPincer({"replay", path});
   EXPECT_EQ(refused.exit_code, kExitBadInput);
-  EXPECT_TRUE(
-      tests::contains(refused.error, "it was made by pincer 0.1.0 (commit deadbeef0000, sources 000000000000), and this is pincer 0.1.0 ("))
+  EXPECT_TRUE(tests::contains(
+      refused.error,
+      "it was made by pincer 0.1.0 (commit deadbeef0000, sources 000000000000), and this is pincer 0.1.0 ("))
       << refused.error;
   EXPECT_TRUE(tests::contains(refused.error, "--other-version")) << refused.error;
   const tests::AppResult told = tests::runPincer({"replay", path, "--other-version"});
   EXPECT_EQ(told.exit_code, kExitOk) << told.error;
   EXPECT_TRUE(tests::contains(told.error, "Their bits may differ")) << told.error;
   Database(path, Database::Mode::kWrite).run("UPDATE session SET version = '0.0.9', sources = '', commit_id = ''");
-  EXPECT_TRUE(tests::contains(tests::runPincer({"replay", path}).error, "made by pincer 0.0.9 (of before sessions kept their commit)"));
+  EXPECT_TRUE(tests::contains(tests::runPincer({"replay", path}).error,
+                              "made by pincer 0.0.9 (of before sessions kept their commit)"));
 }
 
 TEST(Replay, SaysWhatElseDiffersWhereBitsDo) {
@@ -200,7 +206,8 @@ TEST(Version, TellsCommitCompilerLibraryAndProcessor) {
   EXPECT_TRUE(result.out.starts_with("pincer 0.1.0 (commit ") ||
               result.out.starts_with("pincer 0.1.0 (made without its repository, sources "))
       << result.out;
-  for (const char* part : {"sources ", "glibc ", "-ffp-contract=off"}) EXPECT_TRUE(tests::contains(result.out, part)) << part;
+  for (const char* part : {"sources ", "glibc ", "-ffp-contract=off"})
+    EXPECT_TRUE(tests::contains(result.out, part)) << part;
 }
 
 TEST(BidsExport, LaysOutOneTableWithASidecarPerPersonAndTask) {
@@ -231,7 +238,8 @@ TEST(BidsExport, HoldsTheAnswersOfAStudyWithOneFinger) {
   exportBids(SessionReader(directory / "s.db"), directory / "bids");
   const std::string table = tests::readFile(directory / "bids/sub-02/beh/sub-02_task-shapeidentification_beh.tsv");
   EXPECT_NE(table.find("\tcone\t"), std::string::npos) << table;
-  EXPECT_EQ(tests::readFile(directory / "bids/participants.tsv"), "participant_id\tfirst_condition\nsub-01\tfacets\nsub-02\tshaded\n");
+  EXPECT_EQ(tests::readFile(directory / "bids/participants.tsv"),
+            "participant_id\tfirst_condition\nsub-01\tfacets\nsub-02\tshaded\n");
 }
 
 }  // namespace

@@ -23,14 +23,16 @@ HiddenCylinder drawHiddenCylinder(const FlatModel& model, Random& random) {
 }
 
 // A pinch at `angle`, each finger as near to the axis as the surface lets it, read with the model's own noise.
-std::array<FlatPercept, 2> pinchHiddenCylinder(const FlatModel& model, const HiddenCylinder& truth, double angle, Random& random) {
+std::array<FlatPercept, 2> pinchHiddenCylinder(const FlatModel& model, const HiddenCylinder& truth, double angle,
+                                               Random& random) {
   std::array<FlatPercept, 2> pinch;
   for (std::size_t i = 0; i < 2; ++i) {
     const Vec2 outwards = (i == 0 ? -1 : 1) * Vec2(std::cos(angle), std::sin(angle));
     double inside = 0, outside = 0.08;
     for (int k = 0; k < 40; ++k) {
       const double middle = 0.5 * (inside + outside);
-      const bool clear = cutCircle(model, truth.theta, truth.misplacement[i] + middle * outwards).distance > model.tip_radius;
+      const bool clear =
+          cutCircle(model, truth.theta, truth.misplacement[i] + middle * outwards).distance > model.tip_radius;
       (clear ? outside : inside) = middle;
     }
     FlatPercept& percept = pinch[i];
@@ -38,14 +40,16 @@ std::array<FlatPercept, 2> pinchHiddenCylinder(const FlatModel& model, const Hid
     percept.p_felt = outside * outwards + model.span_sd * random.normal2();
     percept.pad = i == 0 ? std::numbers::pi : 0;
     percept.push = normal + model.push_sd * random.normal();
-    percept.place = percept.pad + model.place_gain * std::remainder(normal - percept.pad, kTurn) + model.place_sd * random.normal();
+    percept.place =
+        percept.pad + model.place_gain * std::remainder(normal - percept.pad, kTurn) + model.place_sd * random.normal();
   }
   return pinch;
 }
 
-// A bootstrap filter of 600 hypotheses was sure of its direction to 5 degrees where it was 65 degrees off, in most trials: alignment errors of
-// up to 175 degrees. In a world that is as the belief supposes, five pinches leave 17 degrees on average (3000 hypotheses: the same), and what is
-// beyond 2.5 of the spreads claimed is rare; 12 % and 26 degrees leave room for the 120 trials drawn.
+// A bootstrap filter of 600 hypotheses was sure of its direction to 5 degrees where it was 65 degrees off, in most
+// trials: alignment errors of up to 175 degrees. In a world that is as the belief supposes, five pinches leave 17
+// degrees on average (3000 hypotheses: the same), and what is beyond 2.5 of the spreads claimed is rare; 12 % and 26
+// degrees leave room for the 120 trials drawn.
 TEST(FlatBelief, IsNoSurerThanItMayBe) {
   const FlatModel model;
   Random random(5);
@@ -56,7 +60,8 @@ TEST(FlatBelief, IsNoSurerThanItMayBe) {
   for (int trial = 0; trial < kTrials; ++trial) {
     belief.begin(model, random);
     const HiddenCylinder truth = drawHiddenCylinder(model, random);
-    for (const double angle : {-0.96, 0.0, 0.96, -0.96, 0.0}) belief.observe(pinchHiddenCylinder(model, truth, angle, random), random);
+    for (const double angle : {-0.96, 0.0, 0.96, -0.96, 0.0})
+      belief.observe(pinchHiddenCylinder(model, truth, angle, random), random);
     const double off = std::abs(std::remainder(belief.direction() - truth.theta, kTurn));
     error += off / kTrials;
     too_sure += off > 2.5 * belief.spread();
@@ -101,7 +106,8 @@ TEST(PlaceBelief, TheDishSaysHowHighTheObjectIs) {
   belief.begin(model, random);
   for (int k = 0; k < 6; ++k) belief.placeRead(model.place_gain * Vec2(0, 0.010), random);
   belief.heightFound(random);
-  EXPECT_NEAR(belief.offset().y(), 0, 3 * model.height_sd / std::sqrt(300.0));  // three standard errors of 300 hypotheses
+  // three standard errors of 300 hypotheses
+  EXPECT_NEAR(belief.offset().y(), 0, 3 * model.height_sd / std::sqrt(300.0));
 }
 
 }  // namespace

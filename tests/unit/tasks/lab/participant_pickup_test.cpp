@@ -9,8 +9,8 @@
 namespace pincer::tasks {
 namespace {
 
-// A world made of nothing but percepts: fingers that follow the hand, and a push against the pads when the fingertips are closer than
-// `width`, as stiff as `stiffness`.
+// A world made of nothing but percepts: fingers that follow the hand, and a push against the pads when the fingertips
+// are closer than `width`, as stiff as `stiffness`.
 struct Phantom {
   HandScene scene = makePickupScene({}, makePickupObject({}), {});
   double width = 0.056, stiffness = 300;
@@ -90,7 +90,8 @@ TEST(ScriptedPickup, WaitsForTheStartToneAndItsReactionTime) {
   EXPECT_NEAR(phantom.time - heard, 0.25, 2.5e-3);  // two ticks and round-off
 }
 
-// Grip felt when the lift begins: the wanted one, 2 m g/(2 x 0.52), seen through a magnitude error of SD 10 % (five of them).
+// Grip felt when the lift begins: the wanted one, 2 m g/(2 x 0.52), seen through a
+// magnitude error of SD 10 % (five of them).
 TEST(ScriptedPickup, SqueezesToTheWantedGripAndLifts) {
   Phantom phantom;
   ScriptedPickup participant(1);
@@ -103,7 +104,8 @@ TEST(ScriptedPickup, SqueezesToTheWantedGripAndLifts) {
   const double height = (phantom.scene.model.mounts[0].X_WD * phantom.percept.fingers[0].arm.p_DF).z();
   ASSERT_TRUE(phantom.runTo(participant, HandPhase::kHold));
   const double lifted = (phantom.scene.model.mounts[0].X_WD * phantom.percept.fingers[0].arm.p_DF).z() - height;
-  EXPECT_NEAR(lifted, 0.060, 1e-6);  // 50 mm asked for and 10 mm margin; the lift has moved for one tick when `height` is taken
+  // 50 mm asked for and 10 mm margin; the lift has moved for one tick when `height` is taken
+  EXPECT_NEAR(lifted, 0.060, 1e-6);
 }
 
 TEST(ScriptedPickup, NoticesThatTheObjectGotAwayByTheLossOfForce) {
@@ -115,8 +117,9 @@ TEST(ScriptedPickup, NoticesThatTheObjectGotAwayByTheLossOfForce) {
   phantom.width = 0;
   const double lost = phantom.time;
   ASSERT_TRUE(phantom.runTo(participant, HandPhase::kReach, 1.0));
-  EXPECT_GT(phantom.time - lost, 0.07);        // the reflex
-  EXPECT_LT(phantom.time - lost, 0.07 + 0.1);  // and the decay of felt force from 2 N to 0.1 N: three time constants of 20 ms
+  EXPECT_GT(phantom.time - lost, 0.07);  // the reflex
+  // and the decay of felt force from 2 N to 0.1 N: three time constants of 20 ms
+  EXPECT_LT(phantom.time - lost, 0.07 + 0.1);
   phantom.width = 0.056;
   ASSERT_TRUE(phantom.runTo(participant, HandPhase::kLift));  // it tries again
 }
@@ -137,7 +140,8 @@ double gripWhereTactorsRun(TactorUse use) {
   return -phantom.percept.fingers[0].f_D.z();
 }
 
-// Seven stretches of the reflex time, each 1.3 times as hard: beyond the largest grip, which the hands reach at the stiffness of the phantom.
+// Seven stretches of the reflex time, each 1.3 times as hard: beyond the largest grip, which the
+// hands reach at the stiffness of the phantom.
 TEST(ScriptedPickup, GripsHarderWhereATactorRunsIfThatIsWhatTactorsAreFor) {
   const double place = gripWhereTactorsRun(TactorUse::kPlace), slip = gripWhereTactorsRun(TactorUse::kSlip);
   EXPECT_GT(slip, 1.3 * place);

@@ -22,8 +22,8 @@ TEST(ParticipantRandom, RepeatsItselfForOneSeedAndDiffersForAnother) {
   }
 }
 
-// The generator's own definition, written out for the first output: rotl(s0 + s3, 23) + s0 with the state from splitmix64. The state words
-// for seed 0 are the published outputs of splitmix64.
+// The generator's own definition, written out for the first output: rotl(s0 + s3, 23) + s0 with the state from
+// splitmix64. The state words for seed 0 are the published outputs of splitmix64.
 TEST(ParticipantRandom, IsXoshiro256PlusPlusSeededBySplitmix64) {
   const std::uint64_t s0 = 0xe220a8397b1dcdafu, s3 = 0xf88bb8a8724c81ecu;
   const std::uint64_t sum = s0 + s3;
@@ -74,7 +74,8 @@ TEST(ParticipantBody, IsDrawnWithinItsRanges) {
   }
 }
 
-// The mean of the fingers' misplacements has SD 7 mm per axis, their difference 4 mm. Five standard errors, SD/sqrt(2 n).
+// The mean of the fingers' misplacements has SD 7 mm per axis, their difference
+// 4 mm. Five standard errors, SD/sqrt(2 n).
 TEST(ParticipantBody, MisplacesPinchLineAndFingersAsSpecified) {
   Random random(3);
   const int n = 5000;
@@ -98,7 +99,8 @@ TEST(Reach, StartsAndEndsAtRestAndPeaksAt15Over8OfItsMeanSpeed) {
   EXPECT_NEAR(movement.duration * speed, 0.08, 1e-15);  // 50 mm of the centre and 30 mm of closing
   const double middle = 1.0 + movement.duration / 2;
   const double peak = (movement.at(middle + step).half - movement.at(middle - step).half) / (2 * step);
-  EXPECT_NEAR(peak, 15.0 / 8 * (to.half - from.half) / movement.duration, 1e-8);  // the difference quotient's round-off: 1e-17/1e-6
+  // the difference quotient's round-off: 1e-17/1e-6
+  EXPECT_NEAR(peak, 15.0 / 8 * (to.half - from.half) / movement.duration, 1e-8);
   EXPECT_NEAR((movement.at(1.0 + step).half - from.half) / step, 0, 1e-9);
 }
 

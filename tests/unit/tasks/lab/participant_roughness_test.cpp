@@ -13,7 +13,8 @@ double rmsOf(BandPower band, double amplitude, double frequency) {
   return band.rms();
 }
 
-// A cascade of three first-order high-passes: gain (1 + (f1/f)^2)^(-3/2); of two low-passes at 50 Hz 1 / (1 + (f/50)^2). 10 %: a step of 1 ms.
+// A cascade of three first-order high-passes: gain (1 + (f1/f)^2)^(-3/2); of two low-passes at 50 Hz
+// 1 / (1 + (f/50)^2). 10 %: a step of 1 ms.
 TEST(BandPower, LeavesOutAStrokesOwnMotion) {
   const BandPower slow(5, 50);
   const double whole = 8e-3, bump = 0.07e-3;
@@ -50,7 +51,8 @@ TEST(RoughnessSense, NamesTheRougher) {
   EXPECT_NEAR(shareOfSecond(0, {}, {}), 0.5, 0.26);
 }
 
-// The same push is told less surely once the tactor says "smooth": a quarter of its weight is left. A parked tactor takes nothing away.
+// The same push is told less surely once the tactor says "smooth": a quarter of its weight is
+// left. A parked tactor takes nothing away.
 TEST(RoughnessSense, ASmoothTactorOutweighsARoughPush) {
   const double push = 0.015;
   EXPECT_LT(shareOfSecond(push, 1e-6, 1e-6), shareOfSecond(push, {}, {}));

@@ -28,7 +28,8 @@ TEST(PlaySense, FeelsWhatTheTactorLost) {
   EXPECT_EQ(sense.larger(), 1);
 }
 
-// P(right) = Phi(play / (sqrt(2) sigma)), sigma^2 = (g sigma_w)^2 + sigma_d^2 of one stop: the faster the tactor per finger, the less is noticed.
+// P(right) = Phi(play / (sqrt(2) sigma)), sigma^2 = (g sigma_w)^2 + sigma_d^2 of one stop: the faster
+// the tactor per finger, the less is noticed.
 TEST(PlaySense, IsAsSureAsItsLimitsSay) {
   LagLimits limits;
   limits.difference = 0;
@@ -50,7 +51,8 @@ TEST(PlaySense, IsAsSureAsItsLimitsSay) {
   };
   for (const double gain : {0.12, 1.0}) {
     const double sigma = std::hypot(gain * limits.way_sd, limits.place_sd);
-    EXPECT_NEAR(shareRight(gain, 0.5e-3), 0.5 * std::erfc(-0.5e-3 / (2 * sigma)), 0.03) << gain;  // 4 SD of 4000 answers
+    // 4 SD of 4000 answers
+    EXPECT_NEAR(shareRight(gain, 0.5e-3), 0.5 * std::erfc(-0.5e-3 / (2 * sigma)), 0.03) << gain;
   }
 }
 
@@ -78,8 +80,8 @@ TEST(DelaySense, FeelsMotionAfterTheStopAndTheOnset) {
   }
 }
 
-// Of the front end the tactor freezes two thirds across its travel from where a sweep began, either way, and only a raised finger frees it; without it
-// the whole travel is shown.
+// Of the front end the tactor freezes two thirds across its travel from where a sweep began, either way, and only a
+// raised finger frees it; without it the whole travel is shown.
 TEST(FrontEnd, TheTactorFreezesAtTwoThirdsOfASweepUntilTheFingerIsRaised) {
   struct Places final : StudySink {
     void sample(const SampleRecord& s) override {

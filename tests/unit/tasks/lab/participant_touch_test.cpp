@@ -11,7 +11,8 @@ namespace {
 
 SensingLimits exactTouch() {
   SensingLimits limits;
-  limits.tactor_sd = limits.orientation_sd = limits.placement_sd = limits.placement_between_sd = limits.direction_sd = 0;
+  limits.tactor_sd = limits.orientation_sd = limits.placement_sd = limits.placement_between_sd = limits.direction_sd =
+      0;
   limits.tactor_bias = 1;
   limits.force_lag = 0;
   return limits;
@@ -28,7 +29,8 @@ struct TouchedSphere : ::testing::Test {
     touch.begin(limits, scene.cues, drawBodySense(limits, draw));
     return touch;
   }
-  // Both fingertips touch the sphere with their centres `offset_W` away from the pinch line's middle, tactors where the contacts are.
+  // Both fingertips touch the sphere with their centres `offset_W` away from the pinch
+  // line's middle, tactors where the contacts are.
   Percept percept(double time, const Vec3& offset_W, bool tactors = true) const {
     Percept percept;
     percept.time = time;
@@ -76,7 +78,8 @@ TEST_F(TouchedSphere, TellsNothingWhereTheTactorsStandStill) {
   EXPECT_FALSE(touch.readPlace(random));
 }
 
-// SD of one reading, mean of two fingers: (r + R)/r x 1.63 mm / sqrt 2 = 4.0 mm per axis. Five standard errors, SD/sqrt(2 n).
+// SD of one reading, mean of two fingers: (r + R)/r x 1.63 mm / sqrt 2 = 4.0 mm per
+// axis. Five standard errors, SD/sqrt(2 n).
 TEST_F(TouchedSphere, IsReadWithTheNoiseOfPublishedLocalisation) {
   SensingLimits limits = exactTouch();
   limits.tactor_sd = 1.63e-3;
@@ -94,7 +97,8 @@ TEST_F(TouchedSphere, IsReadWithTheNoiseOfPublishedLocalisation) {
 TEST_F(TouchedSphere, FeelsOnlyWhatPressesAgainstThePadAndExceedsTheFloor) {
   Touch touch = touchWith(exactTouch());
   Percept felt = percept(0, Vec3::Zero());
-  for (std::size_t i = 0; i < 2; ++i) felt.fingers[i].f_D = Vec3(0, 0, i == 0 ? -0.5 : -0.05);  // D's z points at the object
+  // D's z points at the object
+  for (std::size_t i = 0; i < 2; ++i) felt.fingers[i].f_D = Vec3(0, 0, i == 0 ? -0.5 : -0.05);
   touch.feel(felt);
   felt.time = 1e-3;
   touch.feel(felt);

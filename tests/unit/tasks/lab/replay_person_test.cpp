@@ -33,15 +33,18 @@ ManipulationSessionOptions briefSession(int trials) {
   return options;
 }
 
-// What a person does at the window, by the clock of the trial: down beside the sphere, squeeze, lift, wander about; let go near the end.
+// What a person does at the window, by the clock of the trial: down beside the sphere, squeeze,
+// lift, wander about; let go near the end.
 void gesture(devices::MouseHand& hand, const HandScene& scene, std::int64_t tick) {
   if (tick == 2000) hand.move({0, 0, scene.cues.place_W.z() - scene.homes_W[0].z()});
   if (tick == 2300) hand.squeeze(true);
-  if (tick > 3300 && tick < 4300 && tick % 16 == 0) hand.move({0, 1e-4 * std::sin(0.01 * static_cast<double>(tick)), 1e-3});
+  if (tick > 3300 && tick < 4300 && tick % 16 == 0)
+    hand.move({0, 1e-4 * std::sin(0.01 * static_cast<double>(tick)), 1e-3});
   if (tick == 5200) hand.squeeze(false);
 }
 
-// A session at a mouse that nobody holds: the trials' ticks in virtual time, some of them late as in real time. `tell` each tick.
+// A session at a mouse that nobody holds: the trials' ticks in virtual time, some of
+// them late as in real time. `tell` each tick.
 struct MouseSession {
   explicit MouseSession(ManipulationSessionOptions& options, std::function<void(std::int64_t)> tell = {}) {
     options.host.hands = [this](HandTrial& trial) {
@@ -101,7 +104,8 @@ TEST(ReplayOfAPerson, NamesTheFirstTickThatDiffers) {
     Database database(directory / "s.db", Database::Mode::kWrite);
     database.run("DELETE FROM input");
     Statement insert(database, "INSERT INTO input VALUES (?, ?, ?, ?, ?)");
-    for (int i = 0; const std::int64_t value : {chunk.trial, chunk.first_tick, chunk.ticks, chunk.check}) insert.bind(i++, value);
+    for (int i = 0; const std::int64_t value : {chunk.trial, chunk.first_tick, chunk.ticks, chunk.check})
+      insert.bind(i++, value);
     insert.bindBytes(4, chunk.data.value);
     insert.step();
   }
@@ -118,7 +122,9 @@ TEST(ReplayOfAPerson, FindsAByteThatChangedInTheFile) {
   const MouseSession mouse(options);
   runManipulationSession(options, directory / "s.db", kNobodyStops, {});
   Database(directory / "s.db", Database::Mode::kWrite)
-      .run("UPDATE input SET data = CAST(substr(data, 1, 40) || x'5a' || substr(data, 42) AS BLOB) WHERE first_tick > 2000");
+      .run(
+          "UPDATE input SET data = CAST(substr(data, 1, 40) || x'5a' || substr(data, 42) AS BLOB) WHERE first_tick > "
+          "2000");
   const std::string error = tests::errorOf([&] { replaySession(SessionReader(directory / "s.db"), {}, kNobodyStops); });
   EXPECT_NE(error.find("s.db: the inputs of trial 1, ticks "), std::string::npos) << error;
 }
@@ -136,7 +142,8 @@ TEST(ReplayOfAPerson, GoesUpToWhereInputsWereLost) {
   EXPECT_FALSE(replay.first) << replay.first->what;
   ASSERT_EQ(replay.notes.size(), 1u);
   EXPECT_GT(replay.inputs, 0);
-  EXPECT_NE(replay.notes[0].find(std::to_string(replay.inputs) + " inputs of its first ticks are kept"), std::string::npos);
+  EXPECT_NE(replay.notes[0].find(std::to_string(replay.inputs) + " inputs of its first ticks are kept"),
+            std::string::npos);
   EXPECT_EQ(replay.trials, 0);
   EXPECT_EQ(replay.cut_short, 1);
 }
@@ -225,13 +232,15 @@ TEST(ReplayOfAPerson, ASessionOnArmsKeepsTheirCalibrationsAndLimits) {
   EXPECT_EQ(hands.fingers[0].base_turn, 0.02);
   EXPECT_GT(hands.fingers[1].peak_force, 0);
   double felt = 0;
-  session.forEachInput(0, [&](const InputRecord& input) { felt = std::max(felt, std::abs(input.fingers[0].f_arm_D[2])); });
+  session.forEachInput(0,
+                       [&](const InputRecord& input) { felt = std::max(felt, std::abs(input.fingers[0].f_arm_D[2])); });
   EXPECT_GT(felt, 0.1) << "the fingers touched something";
   const ReplayResult replay = replaySession(session, {}, kNobodyStops);
   EXPECT_FALSE(replay.first) << replay.first->what;
   EXPECT_EQ(replay.trials, 1);
   Database(directory / "s.db", Database::Mode::kWrite).run("UPDATE hands SET f0_base_turn_rad = 0.03");
-  EXPECT_TRUE(replaySession(SessionReader(directory / "s.db"), {}, kNobodyStops).first) << "a base that stands elsewhere feels otherwise";
+  EXPECT_TRUE(replaySession(SessionReader(directory / "s.db"), {}, kNobodyStops).first)
+      << "a base that stands elsewhere feels otherwise";
 }
 
 TEST(ReplayOfAPerson, ASessionFromBeforeInputsWereKeptSaysSo) {
@@ -239,7 +248,8 @@ TEST(ReplayOfAPerson, ASessionFromBeforeInputsWereKeptSaysSo) {
   auto options = briefSession(1);
   const MouseSession mouse(options);
   runManipulationSession(options, directory / "s.db", kNobodyStops, {});
-  Database(directory / "s.db", Database::Mode::kWrite).run("DROP TABLE input; DROP TABLE hands; PRAGMA user_version = 2");
+  Database(directory / "s.db", Database::Mode::kWrite)
+      .run("DROP TABLE input; DROP TABLE hands; PRAGMA user_version = 2");
   const std::string error = tests::errorOf([&] { replaySession(SessionReader(directory / "s.db"), {}, kNobodyStops); });
   EXPECT_NE(error.find("didn't keep what people's hands did"), std::string::npos) << error;
 }

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kPeriod = 5e-3, kLag = 40e-3, kAmplitude = 4e-3, kRate = 6;  // [s], [s], [m], [rad/s]
 
-// A tactor that follows a sine along the finger `kLag` late; in the second half the finger touches nothing and the tactor is far away.
+// A tactor that follows a sine along the finger `kLag` late; in the second half the finger
+// touches nothing and the tactor is far away.
 SampleRecord lateSample(int k) {
   SampleRecord sample;
   sample.tick = 5 * k;
@@ -36,7 +37,8 @@ TEST(DeviceErrors, FindTheLagAndNothingElse) {
   EXPECT_NEAR(errors.lag, kLag, 1e-9);
   EXPECT_NEAR(errors.step, kPeriod, 1e-9);
   EXPECT_LT(errors.remains, 1e-12);
-  // The difference is 2 A sin(w lag/2) cos(w (t - lag/2)): its median is 1/sqrt(2) of its amplitude, to the 5 s that are no whole periods.
+  // The difference is 2 A sin(w lag/2) cos(w (t - lag/2)): its median is 1/sqrt(2) of its
+  // amplitude, to the 5 s that are no whole periods.
   EXPECT_NEAR(errors.median, 2 * kAmplitude * std::sin(0.5 * kRate * kLag) * std::sqrt(0.5), 0.02e-3);
   EXPECT_EQ(errors.noticed, 0);
   EXPECT_NE(deviceErrorsHtml(errors).find("40 ± 2.5"), std::string::npos) << deviceErrorsHtml(errors);

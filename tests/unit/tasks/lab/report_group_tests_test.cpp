@@ -1,4 +1,5 @@
-// Distributions and tests of groups: printed tables, closed forms, a certified data set, and what the dissertation printed of its own tests.
+// Distributions and tests of groups: printed tables, closed forms, a certified data set, and what
+// the dissertation printed of its own tests.
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -12,13 +13,17 @@
 namespace pincer::tasks {
 namespace {
 
-// Upper 5 % points of F as printed (Abramowitz & Stegun 1964, table 26.9), two decimals: half a unit of the last times the density there, at most 1.
+// Upper 5 % points of F as printed (Abramowitz & Stegun 1964, table 26.9), two decimals: half a unit of the
+// last times the density there, at most 1.
 TEST(FTail, IsWhatThePrintedTableSays) {
-  const struct { double m, n, f; } table[] = {{1, 5, 6.61}, {3, 10, 3.71}, {3, 40, 2.84}, {4, 20, 2.87}, {10, 10, 2.98}, {4, 120, 2.45}};
+  const struct {
+    double m, n, f;
+  } table[] = {{1, 5, 6.61}, {3, 10, 3.71}, {3, 40, 2.84}, {4, 20, 2.87}, {10, 10, 2.98}, {4, 120, 2.45}};
   for (const auto& row : table) EXPECT_NEAR(fTail(row.f, row.m, row.n), 0.05, 5e-4) << row.m << ", " << row.n;
 }
 
-// Closed forms: of two degrees of freedom above, P = (1 + 2 f / n)^(-n/2); of one, Student's t. 1e-12: the continued fraction's 1e-15 and ln Gamma's 1e-14.
+// Closed forms: of two degrees of freedom above, P = (1 + 2 f / n)^(-n/2); of one, Student's t. 1e-12: the
+// continued fraction's 1e-15 and ln Gamma's 1e-14.
 RC_GTEST_PROP(FTail, IsClosedForOneAndTwoDegreesOfFreedom, ()) {
   const int n = *rc::gen::inRange(1, 200);
   const double f = *rc::gen::map(rc::gen::inRange(1, 2000), [](int k) { return k / 100.0; });
@@ -27,7 +32,8 @@ RC_GTEST_PROP(FTail, IsClosedForOneAndTwoDegreesOfFreedom, ()) {
   RC_ASSERT(std::abs(studentTail(std::sqrt(f), n) - fTail(f, 1, n)) <= 1e-12);
 }
 
-// What ch. 2 and 3 of the dissertation print of their own tests, to the digits printed (F = 0.5 alone has one digit: .48 to .55 make .75 to .70).
+// What ch. 2 and 3 of the dissertation print of their own tests, to the digits printed (F = 0.5 alone
+// has one digit: .48 to .55 make .75 to .70).
 TEST(FTail, IsWhatTheDissertationPrintsOfItsTests) {
   EXPECT_NEAR(studentTail(1.53, 502), 0.127, 5e-4);
   EXPECT_NEAR(fTail(0.5, 4, 995), 0.733, 5e-3);
@@ -36,13 +42,16 @@ TEST(FTail, IsWhatTheDissertationPrintsOfItsTests) {
   EXPECT_LT(fTail(49.89, 1, 38), 0.001);
 }
 
-// Upper 5 % and 1 % points of the studentized range as printed (E. S. Pearson, H. O. Hartley, Biometrika Tables I, table 29), two decimals.
+// Upper 5 % and 1 % points of the studentized range as printed (E. S. Pearson, H. O. Hartley,
+// Biometrika Tables I, table 29), two decimals.
 TEST(StudentizedRange, IsWhatThePrintedTableSays) {
   const struct {
     int k;
     double n, q, p;
-  } table[] = {{2, 10, 3.15, .05}, {3, 10, 3.88, .05}, {4, 20, 3.96, .05}, {4, 40, 3.79, .05}, {5, 60, 3.98, .05}, {3, 20, 4.64, .01}};
-  for (const auto& row : table) EXPECT_NEAR(studentizedRangeTail(row.q, row.k, row.n), row.p, 0.02 * row.p) << row.k << ", " << row.n;
+  } table[] = {{2, 10, 3.15, .05}, {3, 10, 3.88, .05}, {4, 20, 3.96, .05},
+               {4, 40, 3.79, .05}, {5, 60, 3.98, .05}, {3, 20, 4.64, .01}};
+  for (const auto& row : table)
+    EXPECT_NEAR(studentizedRangeTail(row.q, row.k, row.n), row.p, 0.02 * row.p) << row.k << ", " << row.n;
 }
 
 // Of two means it is Student's t times sqrt 2. 1e-6: Simpson's rule.
@@ -52,8 +61,9 @@ RC_GTEST_PROP(StudentizedRange, OfTwoMeansIsStudents, ()) {
   RC_ASSERT(std::abs(studentizedRangeTail(q, 2, n) - studentTail(q / std::sqrt(2.0), n)) <= 1e-6);
 }
 
-// Data set SiRstv of NIST's Statistical Reference Datasets (five instruments, five readings of a resistivity): certified F = 1.18046237440255,
-// residual mean square 0.0108365772. Six digits of the data are common to all, so 1e-9 of F's 16.
+// Data set SiRstv of NIST's Statistical Reference Datasets (five instruments, five readings of a
+// resistivity): certified F = 1.18046237440255, residual mean square 0.0108365772. Six digits of the
+// data are common to all, so 1e-9 of F's 16.
 TEST(OneWayVariance, IsTheCertifiedFigure) {
   const Groups groups = {{196.3052, 196.1240, 196.1890, 196.2569, 196.3403},
                          {196.3042, 196.3825, 196.1669, 196.3257, 196.0422},
@@ -76,8 +86,8 @@ TEST(RepeatedMeasures, OfTwoConditionsIsThePairedTest) {
   EXPECT_NEAR(oneWayVariance({a, b}).p, studentTest(a, b).p, 1e-12);
 }
 
-// By hand: conditions' means 2, 4, 6 over three people who differ by constants and by +-1 of one: residual mean square 1/2... with all of them the same
-// pattern nothing is left, and a test of nothing says nothing.
+// By hand: conditions' means 2, 4, 6 over three people who differ by constants and by +-1 of one: residual mean square
+// 1/2... with all of them the same pattern nothing is left, and a test of nothing says nothing.
 TEST(RepeatedMeasures, TakesOutWhatPeopleShare) {
   EXPECT_EQ(repeatedMeasures({{1, 11, 21}, {2, 12, 22}, {4, 14, 24}}).p, 1);
   const VarianceTest test = repeatedMeasures({{1, 11, 22}, {2, 12, 21}});
@@ -87,7 +97,8 @@ TEST(RepeatedMeasures, TakesOutWhatPeopleShare) {
   EXPECT_NEAR(repeatedMeasures({{1, 11, 22, gone}, {2, 12, 21, 5}}).f, 0.25, 1e-12);
 }
 
-// By hand: a = 1..5, b = 2, 4, .., 10: means 3 and 6, variances 2.5 and 10; error sqrt(2.5) , t = 3 / sqrt 2.5, dof = 2.5^2 / (0.25/4 + 4/4).
+// By hand: a = 1..5, b = 2, 4, .., 10: means 3 and 6, variances 2.5 and 10; error sqrt(2.5) , t = 3
+// / sqrt 2.5, dof = 2.5^2 / (0.25/4 + 4/4).
 TEST(WelchTest, IsRightForTwoSmallGroups) {
   const MeansTest test = welchTest({1, 2, 3, 4, 5}, {2, 4, 6, 8, 10});
   EXPECT_DOUBLE_EQ(test.difference, 3);
@@ -103,7 +114,8 @@ TEST(TukeyPair, OfTwoGroupsIsStudents) {
   EXPECT_GT(tukeyPair({a, b, a, a}, 0, 1), studentTest(a, b).p);
 }
 
-// Mean 0.1, standard error 0.1 (n = 4): against a margin of 0.5, t = 4 and 6 of three degrees of freedom; the larger one-sided p is that of 4.
+// Mean 0.1, standard error 0.1 (n = 4): against a margin of 0.5, t = 4 and 6 of three degrees of
+// freedom; the larger one-sided p is that of 4.
 TEST(EquivalenceTest, TakesTheWorseOfTheTwoSides) {
   const double s = 0.1 * std::sqrt(3.0);
   const std::vector<double> d = {0.1 - s, 0.1 - s, 0.1 + s, 0.1 + s};

@@ -63,7 +63,8 @@ TEST(Report, HoldsTheTableAndEveryFigureAndNeedsNothingElse) {
   EXPECT_FALSE(has(html, "http"));
   EXPECT_FALSE(has(html, "<script"));
   EXPECT_FALSE(has(html, "@import"));
-  for (const char* fact : {"seed", "CLD + force", "force only", "g++ 12.2.0 -O2 &amp; &lt;tests&gt;", "complete", "All trials"}) {
+  for (const char* fact :
+       {"seed", "CLD + force", "force only", "g++ 12.2.0 -O2 &amp; &lt;tests&gt;", "complete", "All trials"}) {
     EXPECT_TRUE(has(html, fact)) << fact;
   }
   EXPECT_FALSE(has(html, "class=\"warning\""));
@@ -74,8 +75,9 @@ TEST(Report, HoldsTheTableAndEveryFigureAndNeedsNothingElse) {
 TEST(Report, LeadsFromEachTrialToWhereAPagePlaysIt) {
   const TemporaryDirectory dir;
   writeSession(dir / "a.db");
-  const std::string html =
-      readFile(writeReport(SessionReader(dir / "a.db"), dir / "r.html", {.replay = {.name = "a & b.html", .trials = {1, 4}}}).html);
+  const std::string html = readFile(
+      writeReport(SessionReader(dir / "a.db"), dir / "r.html", {.replay = {.name = "a & b.html", .trials = {1, 4}}})
+          .html);
   EXPECT_TRUE(has(html, "<a href=\"a &amp; b.html\">Play the session</a>"));
   EXPECT_TRUE(has(html, "<tr id=\"trial-2\"><td><a href=\"a &amp; b.html#shown=1\">2</a></td>"));
   EXPECT_TRUE(has(html, "<tr id=\"trial-5\"><td><a href=\"a &amp; b.html#shown=2\">5</a></td>"));
@@ -99,7 +101,8 @@ TEST(Report, IsMadeOfAnEmptySessionToo) {
   EXPECT_TRUE(has(readFile(files.html), "No trial was finished"));
 }
 
-// A trial without samples, tactors that aren't measured, one trial per cell: nothing to draw here and there, and still a report.
+// A trial without samples, tactors that aren't measured, one trial per cell: nothing to
+// draw here and there, and still a report.
 TEST(Report, CopesWithWhatWasNotMeasured) {
   const TemporaryDirectory dir;
   auto writer = SessionWriter::create(dir / "a.db", {});
@@ -126,7 +129,8 @@ TEST(Report, CopesWithWhatWasNotMeasured) {
 TEST(Report, NamesAMissingGnuplotAndLeavesNothing) {
   const TemporaryDirectory dir;
   writeSession(dir / "a.db");
-  const std::string error = errorOf([&] { writeReport(SessionReader(dir / "a.db"), dir / "r.html", {.gnuplot = "no-such-gnuplot"}); });
+  const std::string error =
+      errorOf([&] { writeReport(SessionReader(dir / "a.db"), dir / "r.html", {.gnuplot = "no-such-gnuplot"}); });
   EXPECT_TRUE(has(error, "no-such-gnuplot")) << error;
   EXPECT_TRUE(has(error, "apt-get install gnuplot-nox")) << error;
   EXPECT_FALSE(std::filesystem::exists(dir / "r.html"));
@@ -168,7 +172,8 @@ TEST(Report, HostileNamesAreDrawnAsTheyAre) {
   EXPECT_TRUE(files.not_drawn.empty());
   const std::string html = readFile(files.html),
                     drawn = readFile(dir / "r_figures/squeezes.svg") + readFile(dir / "r_figures/alignment.svg");
-  for (const char* shown : {"a''b", "x\",\"y", "100 %d %s", "`touch ran`$(touch ran)", "{a}_b^c@d\\n", "é &lt;b>&amp;", "=1+1  z"}) {
+  for (const char* shown :
+       {"a''b", "x\",\"y", "100 %d %s", "`touch ran`$(touch ran)", "{a}_b^c@d\\n", "é &lt;b>&amp;", "=1+1  z"}) {
     EXPECT_TRUE(has(drawn, shown)) << shown;
   }
   EXPECT_TRUE(has(html, "x&quot;,&quot;y") && has(html, "é &lt;b&gt;&amp;"));

@@ -27,9 +27,13 @@ double wilcoxonByBruteForce(const std::vector<double>& ranks_with_sign) {
 }
 
 TEST(Wilcoxon, CountsEverySign) {
-  for (const std::vector<double>& ranks : std::vector<std::vector<double>>{
-           {1, 2, 3, 4, 5}, {-1, 2, 3, 4, 5, 6}, {1, -2, 3, -4, 5, 6, 7, -8}, {1.5, 1.5, -3, 4.5, 4.5}, {-1, -2, -3, -4, -5, -6, -7}}) {
-    EXPECT_NEAR(wilcoxonSignedRank(ranks), wilcoxonByBruteForce(ranks), 1e-12);  // sums of halves: exact but for the count's division
+  for (const std::vector<double>& ranks : std::vector<std::vector<double>>{{1, 2, 3, 4, 5},
+                                                                           {-1, 2, 3, 4, 5, 6},
+                                                                           {1, -2, 3, -4, 5, 6, 7, -8},
+                                                                           {1.5, 1.5, -3, 4.5, 4.5},
+                                                                           {-1, -2, -3, -4, -5, -6, -7}}) {
+    // sums of halves: exact but for the count's division
+    EXPECT_NEAR(wilcoxonSignedRank(ranks), wilcoxonByBruteForce(ranks), 1e-12);
   }
 }
 
@@ -41,7 +45,8 @@ TEST(Wilcoxon, OfTwelveOfOneSignIsTwoInFourThousand) {
   EXPECT_EQ(wilcoxonSignedRank({0, 0, 0}), 1);
 }
 
-// W. S. Gosset ("Student"), Biometrika 6(1), 1908, p. 20: hours of sleep gained by two drugs, ten patients; t = 4.06, p = 0.0028.
+// W. S. Gosset ("Student"), Biometrika 6(1), 1908, p. 20: hours of sleep gained by two
+// drugs, ten patients; t = 4.06, p = 0.0028.
 TEST(PairedTest, OfStudentsSleepers) {
   const std::vector<double> first = {0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0};
   const std::vector<double> second = {1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};

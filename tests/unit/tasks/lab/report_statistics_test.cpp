@@ -17,11 +17,12 @@ TEST(StudentQuantile, IsWhatThePrintedTableSays) {
     double t;
   } table[] = {{1, 12.706}, {2, 4.303},  {3, 3.182},  {4, 2.776},  {5, 2.571},
                {9, 2.262},  {10, 2.228}, {29, 2.045}, {30, 2.042}, {120, 1.980}};
-  for (const auto& row : table) EXPECT_NEAR(studentQuantile(0.95, row.dof), row.t, 5e-4) << row.dof << " degrees of freedom";
+  for (const auto& row : table)
+    EXPECT_NEAR(studentQuantile(0.95, row.dof), row.t, 5e-4) << row.dof << " degrees of freedom";
 }
 
-// Closed forms: one degree of freedom is Cauchy's distribution; two give P = t / sqrt(2 + t^2). The bisection finds the angle to 1 ulp, and t
-// grows with 1 + t^2 per angle; 1e-12 leaves 4 decimal digits for the sum and the tangent.
+// Closed forms: one degree of freedom is Cauchy's distribution; two give P = t / sqrt(2 + t^2). The bisection finds the
+// angle to 1 ulp, and t grows with 1 + t^2 per angle; 1e-12 leaves 4 decimal digits for the sum and the tangent.
 RC_GTEST_PROP(StudentQuantile, IsClosedForOneAndTwoDegreesOfFreedom, ()) {
   const double p = *rc::gen::map(rc::gen::inRange(1, 999), [](int k) { return k / 1000.0; });
   const double cauchy = std::tan(0.5 * std::acos(-1.0) * p);
@@ -30,11 +31,13 @@ RC_GTEST_PROP(StudentQuantile, IsClosedForOneAndTwoDegreesOfFreedom, ()) {
   RC_ASSERT(std::abs(studentQuantile(p, 2) - two) <= 1e-12 * (1 + two * two));
 }
 
-// Against the density, integrated by Simpson's rule: an independent route to the same probability. 1e-9: the rule's error at this step.
+// Against the density, integrated by Simpson's rule: an independent route to the same
+// probability. 1e-9: the rule's error at this step.
 RC_GTEST_PROP(StudentTwoSided, IsTheIntegralOfTheDensity, ()) {
   const int dof = *rc::gen::inRange(1, 60);
   const double t = *rc::gen::map(rc::gen::inRange(1, 500), [](int k) { return k / 100.0; });
-  const double scale = std::exp(std::lgamma(0.5 * (dof + 1)) - std::lgamma(0.5 * dof)) / std::sqrt(dof * std::acos(-1.0));
+  const double scale =
+      std::exp(std::lgamma(0.5 * (dof + 1)) - std::lgamma(0.5 * dof)) / std::sqrt(dof * std::acos(-1.0));
   const auto density = [&](double x) { return scale * std::pow(1 + x * x / dof, -0.5 * (dof + 1)); };
   constexpr int kSteps = 2000;
   double integral = 0;
@@ -42,7 +45,8 @@ RC_GTEST_PROP(StudentTwoSided, IsTheIntegralOfTheDensity, ()) {
   RC_ASSERT(std::abs(studentTwoSided(t, dof) - 2 * integral * t / kSteps / 3) <= 1e-9);
 }
 
-// Of many samples of five normal numbers, 95 % of the intervals hold the true mean. 0.006: 4 SD of the share in 20,000 repetitions.
+// Of many samples of five normal numbers, 95 % of the intervals hold the true mean. 0.006:
+// 4 SD of the share in 20,000 repetitions.
 TEST(EstimateMean, CoversTheTruthNinetyFiveTimesInAHundred) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal(3, 2);
@@ -71,8 +75,8 @@ TEST(EstimateMean, IsRightForFiveNumbers) {
   EXPECT_NEAR(e.half_width, 2.7764 * std::sqrt(0.5), 1e-4);
 }
 
-// Of eight waiting times, skewed to the right: symmetric intervals hold the mean in 89 % of the samples, these in 93 % (of 20,000; 4 SD are 0.8 %),
-// and none of them is below zero.
+// Of eight waiting times, skewed to the right: symmetric intervals hold the mean in 89 % of the samples, these in 93 %
+// (of 20,000; 4 SD are 0.8 %), and none of them is below zero.
 TEST(IntervalOf, OfCountsAndTimesIsNeverBelowZeroAndHoldsTheMeanMoreOften) {
   std::mt19937_64 random(1);
   std::exponential_distribution<double> waiting(1.0 / 3);

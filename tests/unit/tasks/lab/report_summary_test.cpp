@@ -38,8 +38,8 @@ SessionSummary summaryOf(const std::vector<TrialRecord>& trials) {
 }
 
 TEST(SessionSummary, HasACellPerConditionAndFrictionAndOneForAll) {
-  const auto s = summaryOf(
-      {trialOf(0, "cld+force", 0.9, 1, 4), trialOf(0, "force", 0.9, 2, 6), trialOf(0, "force", 0.3, 5, 9), trialOf(0, "force", 0.3, 3, 7)});
+  const auto s = summaryOf({trialOf(0, "cld+force", 0.9, 1, 4), trialOf(0, "force", 0.9, 2, 6),
+                            trialOf(0, "force", 0.3, 5, 9), trialOf(0, "force", 0.3, 3, 7)});
   EXPECT_EQ(s.conditions, (std::vector<std::string>{"force", "cld+force"}));
   EXPECT_EQ(s.frictions, (std::vector<double>{0.3, 0.9}));
   ASSERT_EQ(s.cells.size(), 5u);  // force 0.3, 0.9, all; cld+force 0.9, all
@@ -54,8 +54,8 @@ TEST(SessionSummary, HasACellPerConditionAndFrictionAndOneForAll) {
 
 // Two people with three and one trials count alike.
 TEST(SessionSummary, CountsEachParticipantOnce) {
-  const auto s = summaryOf(
-      {trialOf(0, "force", 0.3, 1, 1), trialOf(0, "force", 0.3, 2, 1), trialOf(0, "force", 0.3, 3, 1), trialOf(1, "force", 0.3, 6, 1)});
+  const auto s = summaryOf({trialOf(0, "force", 0.3, 1, 1), trialOf(0, "force", 0.3, 2, 1),
+                            trialOf(0, "force", 0.3, 3, 1), trialOf(1, "force", 0.3, 6, 1)});
   EXPECT_EQ(s.participants, 2);
   EXPECT_EQ(s.cells[0].measures[kSqueezes].n, 2);
   EXPECT_DOUBLE_EQ(s.cells[0].measures[kSqueezes].mean, 4);
@@ -63,8 +63,8 @@ TEST(SessionSummary, CountsEachParticipantOnce) {
 }
 
 TEST(SessionSummary, MarksTimeOutsAndLeavesFaultsOut) {
-  const auto s =
-      summaryOf({trialOf(0, "force", 0.3, 2, 10), trialOf(0, "force", 0.3, 4, 60, "timeout"), trialOf(0, "force", 0.3, 99, 1, "fault")});
+  const auto s = summaryOf({trialOf(0, "force", 0.3, 2, 10), trialOf(0, "force", 0.3, 4, 60, "timeout"),
+                            trialOf(0, "force", 0.3, 99, 1, "fault")});
   EXPECT_EQ(s.cells[0].trials, 3);
   EXPECT_EQ(s.cells[0].timeouts, 1);
   EXPECT_EQ(s.cells[0].faults, 1);
@@ -84,12 +84,14 @@ TEST(SessionSummary, GivesEqualValuesNoInterval) {
 }
 
 TEST(SessionSummary, PrintsAlignedColumns) {
-  const std::string text = formatTable(summaryOf({trialOf(0, "force", 0.3, 2, 10), trialOf(0, "cld+force", 0.3, 1, 123)}));
+  const std::string text =
+      formatTable(summaryOf({trialOf(0, "force", 0.3, 2, 10), trialOf(0, "cld+force", 0.3, 1, 123)}));
   std::size_t width = 0;
   std::istringstream lines(text);
   std::string line;
   for (int row = 0; row < 5 && std::getline(lines, line); ++row) {
-    const auto characters = static_cast<std::size_t>(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+    const auto characters =
+        static_cast<std::size_t>(std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; }));
     if (row == 0) width = characters;
     EXPECT_EQ(characters, width) << line;
   }
@@ -104,7 +106,8 @@ TEST(SessionSummary, IsNothingButHonestForAnEmptySession) {
 }
 
 TEST(SessionSummary, IsJsonForMachines) {
-  const auto json = nlohmann::json::parse(summaryJson(summaryOf({trialOf(0, "force", 0.3, 2, 10), trialOf(0, "force", 0.3, 4, 11)})));
+  const auto json =
+      nlohmann::json::parse(summaryJson(summaryOf({trialOf(0, "force", 0.3, 2, 10), trialOf(0, "force", 0.3, 4, 11)})));
   EXPECT_EQ(json["seed"], 3);
   EXPECT_EQ(json["state"], "complete");
   EXPECT_EQ(json["cells"][0]["mu_s"], 0.3);

@@ -26,12 +26,14 @@ TEST(ReportSurvey, HasARowPerQuestionAndConditionWithMeanRangeAndAnswers) {
   words.item = "else";
   words.question = "Anything else?";
   words.answer = "<b>too much</b> to feel";
-  const std::string html = htmlSurvey({rated(0, "force", 3), rated(0, "cld+force", 6), words, rated(1, "force", 5), rated(2, "force", 5)});
-  EXPECT_NE(
-      html.find("<td>I did well</td><td></td><td>force</td><td>3</td><td>4.3<br><small>(3 to 5)</small></td><td>3; 5 (2 people)</td>"),
-      std::string::npos)
+  const std::string html =
+      htmlSurvey({rated(0, "force", 3), rated(0, "cld+force", 6), words, rated(1, "force", 5), rated(2, "force", 5)});
+  EXPECT_NE(html.find("<td>I did well</td><td></td><td>force</td><td>3</td><td>4.3<br><small>(3 to "
+                      "5)</small></td><td>3; 5 (2 people)</td>"),
+            std::string::npos)
       << html;
-  EXPECT_NE(html.find("<td>cld+force</td><td>1</td><td>6<br><small>(6 to 6)</small></td><td>6</td>"), std::string::npos) << html;
+  EXPECT_NE(html.find("<td>cld+force</td><td>1</td><td>6<br><small>(6 to 6)</small></td><td>6</td>"), std::string::npos)
+      << html;
   EXPECT_NE(html.find("&lt;b&gt;too much&lt;/b&gt; to feel"), std::string::npos) << "a person's words are no HTML";
 }
 

@@ -16,10 +16,11 @@ namespace {
 
 using contact::SurfaceVariant;
 
-constexpr double kNormal = 0.2 * std::numbers::pi / 180;  // so far may the shaded mesh's normal be off [rad]: the design's bound
-constexpr double kPlace = 0.05e-3;                        // and the place on a pad of 8 mm [m], likewise
-constexpr double kGap = 0.05e-3;                          // nor the gap: as the place [m]
-constexpr double kFinger = 8e-3;                          // [m]
+// so far may the shaded mesh's normal be off [rad]: the design's bound
+constexpr double kNormal = 0.2 * std::numbers::pi / 180;
+constexpr double kPlace = 0.05e-3;  // and the place on a pad of 8 mm [m], likewise
+constexpr double kGap = 0.05e-3;    // nor the gap: as the place [m]
+constexpr double kFinger = 8e-3;    // [m]
 
 struct Found {
   Vec3 n = Vec3::Zero();
@@ -33,7 +34,8 @@ Found touch(const contact::Shape& shape, const Vec3& p) {
   return {found.main().n_B, found.main().phi};
 }
 
-// The largest angle between both normals, over fingers all round that press by half a millimetre at most or hover as far away.
+// The largest angle between both normals, over fingers all round that press by half a
+// millimetre at most or hover as far away.
 double worstNormal(const contact::Shape& exact, const contact::Shape& shaded, double reach, double gap_tolerance) {
   Random random(7);
   double worst = 0;
@@ -55,8 +57,8 @@ double worstNormal(const contact::Shape& exact, const contact::Shape& shaded, do
 
 TEST(ShadedObjects, TheSphereIsFeltAsItsClosedForm) {
   for (const double radius : {0.005, 0.02, 0.05}) {
-    const double worst =
-        worstNormal(contact::Sphere{radius}, contact::Mesh{shadedSphere(radius, SurfaceVariant::smooth)}, radius + kFinger, kGap);
+    const double worst = worstNormal(
+        contact::Sphere{radius}, contact::Mesh{shadedSphere(radius, SurfaceVariant::smooth)}, radius + kFinger, kGap);
     EXPECT_LT(worst, kNormal) << radius;
     EXPECT_LT(kFinger * worst, kPlace) << radius;
   }
@@ -67,9 +69,9 @@ TEST(ShadedObjects, TheCylinderIsFeltAsItsClosedForm) {
   for (const double half_angle : {0.2, 0.7854, 1.2}) {
     for (const double radius : {0.01, 0.02, 0.05}) {
       const double half = 0.04, flat = radius * std::cos(half_angle);
-      const double worst =
-          worstNormal(contact::CylinderWithFlat{radius, half, flat},
-                      contact::Mesh{shadedCylinder(radius, half, flat, SurfaceVariant::smooth)}, half + radius + kFinger, kGap);
+      const double worst = worstNormal(contact::CylinderWithFlat{radius, half, flat},
+                                       contact::Mesh{shadedCylinder(radius, half, flat, SurfaceVariant::smooth)},
+                                       half + radius + kFinger, kGap);
       EXPECT_LT(worst, kNormal) << radius << " " << half_angle;
       EXPECT_LT(kFinger * worst, kPlace) << radius << " " << half_angle;
     }
@@ -78,11 +80,13 @@ TEST(ShadedObjects, TheCylinderIsFeltAsItsClosedForm) {
 
 // Unshaded facets are felt as such: 10 degrees from one to the next, their middles 0.13 mm below the sphere.
 TEST(ShadedObjects, FacetsAreNotShaded) {
-  const double worst = worstNormal(contact::Sphere{0.02}, contact::Mesh{shadedSphere(0.02, SurfaceVariant::facet)}, 0.02 + kFinger, 2e-4);
+  const double worst = worstNormal(contact::Sphere{0.02}, contact::Mesh{shadedSphere(0.02, SurfaceVariant::facet)},
+                                   0.02 + kFinger, 2e-4);
   EXPECT_GT(worst, 3 * std::numbers::pi / 180);
 }
 
-// By default both tasks' objects are meshes to fingers, and closed forms to dish, pivot and inertia; the option gives the closed form to fingers too.
+// By default both tasks' objects are meshes to fingers, and closed forms to dish, pivot and inertia; the
+// option gives the closed form to fingers too.
 TEST(ShadedObjects, BothTasksFeelThemByDefault) {
   const SpherePickupOptions pickup;
   const HandScene sphere = makePickupScene(pickup, makePickupObject(pickup), {});
@@ -92,7 +96,8 @@ TEST(ShadedObjects, BothTasksFeelThemByDefault) {
     const grasp::GraspModel& model = scene->model.grasp;
     const int collider = model.world.bodies[static_cast<std::size_t>(scene->object)].first_collider;
     EXPECT_TRUE(std::holds_alternative<contact::Mesh>(grasp::feltShape(model, collider)));
-    EXPECT_FALSE(std::holds_alternative<contact::Mesh>(model.world.colliders[static_cast<std::size_t>(collider)].shape));
+    EXPECT_FALSE(
+        std::holds_alternative<contact::Mesh>(model.world.colliders[static_cast<std::size_t>(collider)].shape));
   }
   SpherePickupOptions exact;
   exact.shading.reset();

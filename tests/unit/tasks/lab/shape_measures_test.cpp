@@ -13,7 +13,8 @@
 namespace pincer::tasks {
 namespace {
 
-// Every solid once in each of four conditions. Everybody knows all of them but for the tetrahedron, a cone when shaded; spheres take 8 s, the rest 16.
+// Every solid once in each of four conditions. Everybody knows all of them but for the tetrahedron, a cone
+// when shaded; spheres take 8 s, the rest 16.
 std::vector<ResponseRecord> answersOf(int people) {
   std::vector<ResponseRecord> answers;
   for (int person = 0; person < people; ++person) {
@@ -66,7 +67,8 @@ TEST(ShapeMeasures, AreThoseOfTheAnswers) {
   EXPECT_NEAR(m.of("unevenness:cld")[0], std::sqrt((45.0 * 45 + 9 * 25) / 9), 1e-9);  // 50 once and 0 nine times
 }
 
-// F13 needs people who are right as often, F21 that spheres are faster: in four studies of three people who all do the same.
+// F13 needs people who are right as often, F21 that spheres are faster: in four
+// studies of three people who all do the same.
 TEST(ShapeMeasures, JudgeTheClaims) {
   const tests::TemporaryDirectory dir;
   std::vector<std::string> paths;
@@ -84,7 +86,8 @@ TEST(ShapeMeasures, JudgeTheClaims) {
   }
   const ClaimTable table = judgeClaims({{{"shape-identification", paths}}, {}, {}});
   const auto verdict = [&](const std::string& id) {
-    const auto row = std::find_if(table.rows.begin(), table.rows.end(), [&](const ClaimRow& r) { return r.claim->id == id; });
+    const auto row =
+        std::find_if(table.rows.begin(), table.rows.end(), [&](const ClaimRow& r) { return r.claim->id == id; });
     return verdictOn(*row->claim, row->evidence);
   };
   EXPECT_EQ(verdict("F21"), "follows");

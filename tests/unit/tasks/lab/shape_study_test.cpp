@@ -20,8 +20,9 @@ struct NoMemory final : StudySink {
   void response(const ResponseRecord&) override {}
 };
 
-// 18 people, 2 sessions of 4 runs of all 14 models: 112 trials each, 288 per solid; pointed ones to either side once per session and way of rendering;
-// the display in the first two runs of a session for even-numbered people (counted from 1), else in the last two.
+// 18 people, 2 sessions of 4 runs of all 14 models: 112 trials each, 288 per solid; pointed ones to either side
+// once per session and way of rendering; the display in the first two runs of a session for even-numbered
+// people (counted from 1), else in the last two.
 TEST(Shapes, TheDesignIsThePublishedOne) {
   ShapeStudy study;
   study.sizes.facet_sides = 24;  // 180 take long to build
@@ -43,7 +44,8 @@ TEST(Shapes, TheDesignIsThePublishedOne) {
   for (const auto& [cell, sum] : sides) EXPECT_EQ(sum, 0) << cell << ": once to either side";
 }
 
-// Left-right isn't shown: a contact straight beside the pad leaves the roller in the middle, one ahead moves it by radius times angle.
+// Left-right isn't shown: a contact straight beside the pad leaves the roller in the middle,
+// one ahead moves it by radius times angle.
 TEST(Shapes, TheRollerShowsTheForeAftAngleOnly) {
   const double r = 0.02;
   EXPECT_NEAR(onRoller({false, Vec2(0, 0.01)}, r, 8e-3).place_L.x(), 0, 1e-15);
@@ -51,7 +53,8 @@ TEST(Shapes, TheRollerShowsTheForeAftAngleOnly) {
   EXPECT_EQ(onRoller({false, Vec2(-0.015, 0)}, r, 8e-3).place_L.x(), -8e-3);
   const double t = 0.9;  // direction (sin t cos 45, sin t sin 45, cos t)
   const Vec2 place = r * t * Vec2(1, 1).normalized();
-  EXPECT_NEAR(onRoller({false, place}, r, 0.1).place_L.x(), r * std::atan2(std::sin(t) / std::sqrt(2.0), std::cos(t)), 1e-12);
+  EXPECT_NEAR(onRoller({false, place}, r, 0.1).place_L.x(), r * std::atan2(std::sin(t) / std::sqrt(2.0), std::cos(t)),
+              1e-12);
   EXPECT_TRUE(onRoller({true, Vec2(0.001, 0)}, r, 8e-3).parked);
 }
 
@@ -75,7 +78,8 @@ TEST(Shapes, SolidsAreFeltWithoutAFault) {
   }
 }
 
-// The control under which all that rests on the solid must vanish: names are right one time in seven, here within three standard deviations of 28.
+// The control under which all that rests on the solid must vanish: names are right one time in seven,
+// here within three standard deviations of 28.
 TEST(Shapes, WhoFeelsAnotherModelThanAskedNamesItByChance) {
   ShapeStudy study;
   study.participants = 1;
@@ -110,8 +114,8 @@ struct PushMemory final : StudySink {
   int samples = 0, hard = 0;
 };
 
-// The aim ran ahead on faces that lie 60 degrees across the way, and the hand pushed against all that the arm has (8.5 N) for a fifth of the time,
-// right through the prism; one person's trials ended in a fault for it. 0.8 N is wanted.
+// The aim ran ahead on faces that lie 60 degrees across the way, and the hand pushed against all that the arm has (8.5
+// N) for a fifth of the time, right through the prism; one person's trials ended in a fault for it. 0.8 N is wanted.
 TEST(Shapes, FacesAcrossTheWayAreFeltAsLightlyAsIsWanted) {
   ShapeTrialSetup setup;
   setup.solid = makeSolid("triangle", false, {});

@@ -74,7 +74,8 @@ TEST(PickupJudge, MeasuresTheOffsetFromTheLineThroughTheContacts) {
   Stage stage;
   stage.view.wants_lift = true;
   EXPECT_TRUE(std::isnan(stage.counts().offset_at_squeeze));
-  for (auto& finger : stage.view.fingers) finger.p_WC += Vec3(0.001, 0.003, -0.004);  // the shift along the line doesn't count
+  // the shift along the line doesn't count
+  for (auto& finger : stage.view.fingers) finger.p_WC += Vec3(0.001, 0.003, -0.004);
   stage.grip(1);
   stage.play(0.01);
   EXPECT_NEAR(stage.counts().offset_at_squeeze, 0.005, 1e-15);

@@ -45,12 +45,14 @@ TEST(PickupObject, IsASphereAtTheBottomOfTheDishByDefault) {
   EXPECT_EQ(object.asymmetry, 0);
 }
 
-// A cube of edge a rests on its four lower corners, a/sqrt 2 from the axis: its centre is at a/2 + D - sqrt(D^2 - a^2/2).
+// A cube of edge a rests on its four lower corners, a/sqrt 2 from the axis: its
+// centre is at a/2 + D - sqrt(D^2 - a^2/2).
 TEST_F(PickupObjectFile, SettlesInTheDishAndIsMeasuredOnThePinchLine) {
   write(cubeObj(), "mm");
   const PickupObject object = makePickupObject(options);
   const double a = 0.030, dish = options.dish_radius;
-  EXPECT_NEAR(object.place_W.z(), a / 2 + dish - std::sqrt(dish * dish - a * a / 2), 1e-5);  // rests within the solver's capped correction
+  // rests within the solver's capped correction
+  EXPECT_NEAR(object.place_W.z(), a / 2 + dish - std::sqrt(dish * dish - a * a / 2), 1e-5);
   EXPECT_NEAR(object.half_width, a / 2, 1e-4);
   EXPECT_LT(object.asymmetry, 1e-4);
   EXPECT_LT(object.antipodal_angle, 0.01);
@@ -74,7 +76,8 @@ TEST_F(PickupObjectFile, IsScaledToItsSize) {
   options.object->units = "in";
   options.object->size = 0.030;
   const PickupObject sized = makePickupObject(options);
-  EXPECT_NEAR(sized.half_width, in_mm.half_width, 1e-9);  // settling amplifies the round-off of the scale, by far less than this
+  // settling amplifies the round-off of the scale, by far less than this
+  EXPECT_NEAR(sized.half_width, in_mm.half_width, 1e-9);
   EXPECT_NEAR(sized.place_W.z(), in_mm.place_W.z(), 1e-9);
 }
 

@@ -58,7 +58,8 @@ TEST(SpherePickupTrials, AreShuffledByTheSeed) {
   EXPECT_EQ(orderOf(options), orderOf(options));
   EXPECT_NE(orderOf(options), orderOf(other));
   const auto order = orderOf(options);
-  EXPECT_NE(std::vector<double>(order.begin(), order.begin() + 20), std::vector<double>(order.begin() + 20, order.end()));
+  EXPECT_NE(std::vector<double>(order.begin(), order.begin() + 20),
+            std::vector<double>(order.begin() + 20, order.end()));
   EXPECT_FALSE(std::is_sorted(order.begin(), order.begin() + 20));
 }
 

@@ -19,7 +19,8 @@ constexpr std::size_t kTicks = 70000;  // of the longest trial
 // Senses without error: such a participant pinches the sphere where it is.
 SensingLimits exactSenses() {
   SensingLimits limits;
-  limits.tactor_sd = limits.orientation_sd = limits.placement_sd = limits.placement_between_sd = limits.direction_sd = limits.force_sd = 0;
+  limits.tactor_sd = limits.orientation_sd = limits.placement_sd = limits.placement_between_sd = limits.direction_sd =
+      limits.force_sd = 0;
   return limits;
 }
 
@@ -70,7 +71,8 @@ TEST(SpherePickupTrial, HoldsTheSphere50mmUpForTheLastSecond) {
   const double end = start + row.duration;
   for (const auto& sample : run.sink.samples) {
     if (sample.time < end - 1 || sample.time > end) continue;
-    EXPECT_GE(sample.p_WB[2], run.options.radius + 0.050 - 1e-4);  // the dish is curved: a bottom 1 mm off its middle is 3 um higher
+    // the dish is curved: a bottom 1 mm off its middle is 3 um higher
+    EXPECT_GE(sample.p_WB[2], run.options.radius + 0.050 - 1e-4);
   }
 }
 
@@ -136,7 +138,8 @@ TEST(SpherePickupTrial, MeasuresTheClearanceOfASphereLiftedStraightUp) {
   const HandScene scene = makePickupScene(options, makePickupObject(options), specWith(0.5));
   contact::PatchCache patches;
   for (const double height : {0.0, 0.001, 0.05, 0.08}) {
-    EXPECT_NEAR(clearanceOverDish(scene, {Quat::Identity(), Vec3(0, 0, options.radius + height)}, patches), height, 1e-15);
+    EXPECT_NEAR(clearanceOverDish(scene, {Quat::Identity(), Vec3(0, 0, options.radius + height)}, patches), height,
+                1e-15);
   }
 }
 

@@ -76,11 +76,13 @@ TEST(Psychometric, LevelOfUndoesAt) {
   }
 }
 
-// Counts that are exactly what the function expects have their most likely function there, whatever the noise of real ones.
+// Counts that are exactly what the function expects have their most likely
+// function there, whatever the noise of real ones.
 TEST(Psychometric, FindsTheFunctionBehindNoiselessCounts) {
   const PsychometricFunction truth{Sigmoid::kLogistic, 2, 0.5, 0.5, 0};
   std::vector<LevelCount> counts;
-  for (double x = 0; x <= 4; x += 0.5) counts.push_back({x, static_cast<int>(std::lround(1e6 * truth.at(x))), 1'000'000});
+  for (double x = 0; x <= 4; x += 0.5)
+    counts.push_back({x, static_cast<int>(std::lround(1e6 * truth.at(x))), 1'000'000});
   const PsychometricFit fit = fitPsychometric(counts, Sigmoid::kLogistic, 0.5, 0.75);
   EXPECT_NEAR(fit.threshold, 2, 1e-3);  // counts rounded to 1e-6, golden section to 5e-7 of the range of 12
   EXPECT_NEAR(fit.function.beta, 0.5, 1e-3);
@@ -89,8 +91,8 @@ TEST(Psychometric, FindsTheFunctionBehindNoiselessCounts) {
   EXPECT_GT(fit.interval.high, fit.threshold);
 }
 
-// At one true proportion the profile is the binomial likelihood itself: its interval is known in closed form for 50 of 100 ... here the
-// width scales with 1 / sqrt(trials).
+// At one true proportion the profile is the binomial likelihood itself: its interval is known in closed form for 50 of
+// 100 ... here the width scales with 1 / sqrt(trials).
 TEST(Psychometric, IntervalsShrinkWithTheRootOfTheTrials) {
   const PsychometricFunction truth{Sigmoid::kNormal, 1, 0.4, 0.5, 0};
   const auto width = [&](int trials) {

@@ -1,4 +1,5 @@
-// What a study's report says, on answers that nobody gave: thresholds, intervals, verdicts, and every figure with its numbers.
+// What a study's report says, on answers that nobody gave: thresholds, intervals,
+// verdicts, and every figure with its numbers.
 #include "pincer/tasks/lab/report/study_report.h"
 
 #include <gtest/gtest.h>
@@ -75,14 +76,16 @@ TEST(StudyReport, ThresholdsAreMeansOfTheLastReversalsPerPerson) {
   EXPECT_NEAR(whole.people[0].headline, 0.060, 1e-12);
   EXPECT_NEAR(whole.people[1].headline, 0.080, 1e-12);
   EXPECT_NEAR(whole.headline.mean, 0.070, 1e-12);
-  EXPECT_NEAR(whole.headline.half_width, 0.010 * 12.7062, 1e-5);  // t of one degree of freedom times s / sqrt(2) = 10 ms
+  // t of one degree of freedom times s / sqrt(2) = 10 ms
+  EXPECT_NEAR(whole.headline.half_width, 0.010 * 12.7062, 1e-5);
   EXPECT_EQ(whole.right.mean, 0.75);
   EXPECT_EQ(s.conditions[1].trials, 0);
   const std::string table = formatStudyTable(s);
   EXPECT_TRUE(contains(table, "70.0 (11.4 to 429.9)") && contains(table, "yes")) << table;
 }
 
-// Turns of 0.9/9 and 0.9/99 rad, over and over: n = 10 and 100. The mean of n is 55; the n of the mean angle would be 17.5.
+// Turns of 0.9/9 and 0.9/99 rad, over and over: n = 10 and 100. The mean of n is
+// 55; the n of the mean angle would be 17.5.
 TEST(StudyReport, CountsSmoothnessInSegmentsAndAveragesThem) {
   const TemporaryDirectory dir;
   SessionInfo info;
@@ -105,14 +108,17 @@ TEST(StudyReport, CountsSmoothnessInSegmentsAndAveragesThem) {
   EXPECT_NEAR(s.conditions[0].headline.mean, 55, 1e-9);
   EXPECT_NEAR(levelShown(s, 55), 180 / M_PI * 0.9 / 54, 1e-12);
   const std::string table = formatStudyTable(s);
-  EXPECT_TRUE(contains(table, "threshold [segments]") && contains(table, "55.00 (0.95°)") && contains(table, "104")) << table;
+  EXPECT_TRUE(contains(table, "threshold [segments]") && contains(table, "55.00 (0.95°)") && contains(table, "104"))
+      << table;
 }
 
-// 1, 2, 3 against 4, 5, 7 of the same people: F(1, 4) = 10 and t(4) = 3.16, p = .034; within people F(1, 2) = 100, t = 10, p = .010, d_z = 5.77.
+// 1, 2, 3 against 4, 5, 7 of the same people: F(1, 4) = 10 and t(4) = 3.16, p = .034; within people
+// F(1, 2) = 100, t = 10, p = .010, d_z = 5.77.
 TEST(StudyReport, ComparesConditionsAsPublishedAndWithinPeople) {
   StudySummary s;
   s.headline = {"threshold", "ms", 1e3, "ms", 1e3};
-  for (const auto& [name, figures] : {std::pair("a", std::array{1e-3, 2e-3, 3e-3}), std::pair("b", std::array{4e-3, 5e-3, 7e-3})}) {
+  for (const auto& [name, figures] :
+       {std::pair("a", std::array{1e-3, 2e-3, 3e-3}), std::pair("b", std::array{4e-3, 5e-3, 7e-3})}) {
     StudyCondition c;
     c.name = name;
     for (std::size_t i = 0; i < figures.size(); ++i) c.people.push_back({static_cast<std::int64_t>(i), figures[i]});

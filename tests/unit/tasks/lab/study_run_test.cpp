@@ -1,4 +1,5 @@
-// Whole studies, small: the same seed gives the same answers, a killed or resumed one loses nothing, and the devices' tick is what it says.
+// Whole studies, small: the same seed gives the same answers, a killed or resumed one loses
+// nothing, and the devices' tick is what it says.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -45,7 +46,8 @@ ArcStudy smallStudy(ArcStudy study) {
   return study;
 }
 
-std::vector<ResponseRecord> answersOf(Experiment& experiment, std::uint64_t seed, const std::vector<ResponseRecord>& earlier = {}) {
+std::vector<ResponseRecord> answersOf(Experiment& experiment, std::uint64_t seed,
+                                      const std::vector<ResponseRecord>& earlier = {}) {
   StudyMemory memory;
   const std::atomic<bool> no{false};
   runStudy(experiment, seed, earlier, memory, no);
@@ -79,7 +81,8 @@ TEST(Study, RefusesToResumeWhatItWouldNotHaveShown) {
   EXPECT_TRUE(contains(errorOf([&] { answersOf(experiment, 5, {other}); }), "trial 1 of the session isn't the one"));
 }
 
-// A finger that strokes the circle touches it all the way, at about the speed of its hand, and no trial ends in a fault.
+// A finger that strokes the circle touches it all the way, at about the speed
+// of its hand, and no trial ends in a fault.
 TEST(Study, StrokesStayOnTheSurface) {
   for (const ArcStudy& study : {smoothnessStudy(), backlashStudy(), delayStudy()}) {
     ArcStudy small = smallStudy(study);
@@ -120,11 +123,14 @@ TEST(Study, PlacesAreFoundAgain) {
   EXPECT_LT(sum / 10, 3e-3);  // 1.3 mm expected, its SD over ten answers 0.31 mm: five of them
 }
 
-// Which sense feels what, as published: facets in both is C3, facets in force alone with the smooth tactor C4; the pilots come after the others.
+// Which sense feels what, as published: facets in both is C3, facets in force alone with the smooth
+// tactor C4; the pilots come after the others.
 TEST(Smoothness, ConditionsAreThePublishedOnes) {
   using Variant = contact::SurfaceVariant;
   const ArcStudy study = smoothnessStudy();
-  const auto shown = [&](std::size_t k) { return std::make_pair(study.conditions[k].force, study.conditions[k].tactile); };
+  const auto shown = [&](std::size_t k) {
+    return std::make_pair(study.conditions[k].force, study.conditions[k].tactile);
+  };
   const std::optional<Variant> parked;
   EXPECT_EQ(shown(0), std::make_pair(Variant::facet, parked));
   EXPECT_EQ(shown(1), std::make_pair(Variant::force, parked));
@@ -135,7 +141,8 @@ TEST(Smoothness, ConditionsAreThePublishedOnes) {
   const std::vector<StudyRun> runs = ArcExperiment(study, {}, 50).runs();
   ASSERT_EQ(runs.size(), 72u);
   for (std::size_t p = 0; p < 12; ++p) {
-    EXPECT_EQ(runs[6 * p].condition, study.conditions[p % 4].name) << "a reduced Latin square: its first column in order";
+    EXPECT_EQ(runs[6 * p].condition, study.conditions[p % 4].name)
+        << "a reduced Latin square: its first column in order";
     EXPECT_EQ(runs[6 * p + 4].condition, "P1");
     EXPECT_EQ(runs[6 * p + 5].condition, "P2");
   }
@@ -161,12 +168,14 @@ TEST(Smoothness, StrokesGoForeAndAft) {
   const std::atomic<bool> no{false};
   runStudy(experiment, 1, {}, places, no);
   EXPECT_LT(places.high[0] - places.low[0], 1e-3);
-  EXPECT_NEAR(places.high[1] - places.low[1], 2 * 0.12 * std::sin(0.4), 5e-3);  // a hand's spring gives way by a few millimetres
+  // a hand's spring gives way by a few millimetres
+  EXPECT_NEAR(places.high[1] - places.low[1], 2 * 0.12 * std::sin(0.4), 5e-3);
 }
 
 // A finger pressed into the circle by d gets k d outwards, and the tactor goes where the finger touches.
 TEST(PlanarTick, ForceAndPlaceAreThoseOfTheCircle) {
-  const auto circle = std::make_shared<const contact::Curve>(contact::arcPolygon(0.1, 1e-3, 1.0), contact::SurfaceVariant::smooth);
+  const auto circle =
+      std::make_shared<const contact::Curve>(contact::arcPolygon(0.1, 1e-3, 1.0), contact::SurfaceVariant::smooth);
   PlanarTickModel model;
   model.gate.ramp_time = 0;
   model.gate.slew = 1e9;
@@ -180,7 +189,8 @@ TEST(PlanarTick, ForceAndPlaceAreThoseOfTheCircle) {
   const std::int64_t allocations = tests::allocationCount();
   const PlanarTickOutput out = planarTick(model, stimulus, state, sample, 0, 1e-3);
   EXPECT_EQ(tests::allocationCount(), allocations);
-  EXPECT_NEAR(out.normal_force, model.stiffness * depth, 1e-3);  // the polygon's circle is 1.3e-8 m off: (1e-3)^2 / 8 of 0.1 m
+  // the polygon's circle is 1.3e-8 m off: (1e-3)^2 / 8 of 0.1 m
+  EXPECT_NEAR(out.normal_force, model.stiffness * depth, 1e-3);
   EXPECT_NEAR(out.f_D.y(), model.stiffness * depth * std::sin(a), 1e-3);
   EXPECT_NEAR(out.tactile.place_L.x(), -model.finger_radius * a, 1e-5);
   EXPECT_FALSE(out.tactile.parked);
@@ -241,7 +251,8 @@ LocalisationStudy studyToKill() {
   return study;
 }
 
-// Runs the study in a child, from its begin or from where the last one died, and kills that after `trials` more and `delay` microseconds.
+// Runs the study in a child, from its begin or from where the last one died, and kills that
+// after `trials` more and `delay` microseconds.
 void killStudyAfter(const StudySession& session, int trials, unsigned delay) {
   int reported[2];
   ASSERT_EQ(::pipe(reported), 0);
@@ -264,8 +275,8 @@ void killStudyAfter(const StudySession& session, int trials, unsigned delay) {
   ::close(reported[0]);
 }
 
-// Killed again and again, each time somewhere else in a trial (where, the machine decides), and resumed: the answers and samples are those of the
-// study that nobody touched.
+// Killed again and again, each time somewhere else in a trial (where, the machine decides), and resumed: the answers
+// and samples are those of the study that nobody touched.
 TEST(StudySession, GoesOnAfterEveryKillToTheSameEnd) {
   const TemporaryDirectory dir;
   StudySession session;
@@ -300,11 +311,20 @@ TEST(StudySession, GoesOnAfterEveryKillToTheSameEnd) {
 TEST(StudyApp, ResumesWithTheSessionsOwnParameters) {
   const TemporaryDirectory dir;
   std::ofstream(dir / "small.json") << R"({"repetitions": 1})";
-  const std::vector<std::string> begin = {
-      "run",        "repeated-localisation", "--participants", "1", "--study", dir / "small.json", "--seed", "4", "--out", dir / "out",
-      "--no-report"};
+  const std::vector<std::string> begin = {"run",
+                                          "repeated-localisation",
+                                          "--participants",
+                                          "1",
+                                          "--study",
+                                          dir / "small.json",
+                                          "--seed",
+                                          "4",
+                                          "--out",
+                                          dir / "out",
+                                          "--no-report"};
   ASSERT_EQ(tests::runPincer(begin).exit_code, 0);
-  const std::vector<std::string> resume = {"run", "repeated-localisation", "--resume", "--out", dir / "out", "--no-report"};
+  const std::vector<std::string> resume = {"run",        "repeated-localisation", "--resume", "--out", dir / "out",
+                                           "--no-report"};
   const auto finished = tests::runPincer(resume);
   EXPECT_EQ(finished.exit_code, 3);
   EXPECT_TRUE(contains(finished.error, "the session is complete")) << finished.error;
@@ -320,12 +340,14 @@ TEST(StudyApp, ResumesWithTheSessionsOwnParameters) {
 
 TEST(StudyApp, RunsReportsAndPrintsItsStudy) {
   const TemporaryDirectory dir;
-  std::ofstream(dir / "small.json") << R"({"strokes": 2, "conditions": [{"name": "whole", "staircase": {"most_trials": 2}}]})";
-  const auto printed = tests::runPincer({"run", "delay-discrimination", "--study", dir / "small.json", "--print-study"});
+  std::ofstream(dir / "small.json")
+      << R"({"strokes": 2, "conditions": [{"name": "whole", "staircase": {"most_trials": 2}}]})";
+  const auto printed =
+      tests::runPincer({"run", "delay-discrimination", "--study", dir / "small.json", "--print-study"});
   EXPECT_EQ(printed.exit_code, 0) << printed.error;
   EXPECT_TRUE(contains(printed.out, "\"strokes\": 2")) << printed.out;
-  const auto run = tests::runPincer(
-      {"run", "delay-discrimination", "--participants", "1", "--study", dir / "small.json", "--out", dir / "out", "--no-report", "--json"});
+  const auto run = tests::runPincer({"run", "delay-discrimination", "--participants", "1", "--study",
+                                     dir / "small.json", "--out", dir / "out", "--no-report", "--json"});
   EXPECT_EQ(run.exit_code, 0) << run.error;
   EXPECT_TRUE(contains(run.out, "\"task\": \"delay-discrimination\"")) << run.out;
   const auto bad = tests::runPincer({"run", "delay-discrimination", "--participants", "0"});

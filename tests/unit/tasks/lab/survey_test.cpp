@@ -26,8 +26,8 @@ TEST(Survey, IsAskedOfEachTaskInEachCondition) {
   EXPECT_EQ(questions.size(), 7u * 4 + 4);
   EXPECT_EQ(questionText(questions[0]), "I did well (sphere-pickup, force only)");
   EXPECT_EQ(answerHint(questions[0].item), "a number from 1 (not at all) to 7 (very much)");
-  const auto preferred =
-      std::find_if(questions.begin(), questions.end(), [](const SurveyQuestion& q) { return q.item.name == "preferred"; });
+  const auto preferred = std::find_if(questions.begin(), questions.end(),
+                                      [](const SurveyQuestion& q) { return q.item.name == "preferred"; });
   ASSERT_NE(preferred, questions.end());
   EXPECT_EQ(answerHint(preferred->item), "1 force only or 2 display and force");
 }
@@ -43,7 +43,8 @@ TEST(Survey, TakesWhatFitsAndSaysWhatWould) {
   choice.choices = {"right", "left"};
   EXPECT_EQ(answerOf(scale, " 7 ").value, 7);
   for (const char* bad : {"", "0", "8", "3.5", "7x", "nan", "inf", "very"})
-    EXPECT_TRUE(contains(errorOf([&] { answerOf(scale, bad); }), "isn't an answer here. Give a number from 1 to 7.")) << bad;
+    EXPECT_TRUE(contains(errorOf([&] { answerOf(scale, bad); }), "isn't an answer here. Give a number from 1 to 7."))
+        << bad;
   EXPECT_EQ(answerOf(choice, "2").text, "left");
   EXPECT_EQ(answerOf(choice, "right").value, 1);
   EXPECT_TRUE(contains(errorOf([&] { answerOf(choice, "3"); }), "Give 1 right or 2 left."));
@@ -92,7 +93,8 @@ TEST(Survey, IsKeptInTheSessionAndExported) {
   exportBids(reader, dir / "bids");
   EXPECT_TRUE(contains(tests::readFile(dir / "bids/phenotype/survey.tsv"),
                        "sub-01\tafter\tremarks\tn/a\tn/a\tAnything else?\t'=cold\\tfingers\tn/a"));
-  EXPECT_TRUE(contains(tests::readFile(dir / "bids/phenotype/survey.json"), "\"item\": {\"Description\": \"name of the question"));
+  EXPECT_TRUE(contains(tests::readFile(dir / "bids/phenotype/survey.json"),
+                       "\"item\": {\"Description\": \"name of the question"));
 }
 
 TEST(SurveyFile, TheGuidesStudyIsRead) {
@@ -103,7 +105,8 @@ TEST(SurveyFile, TheGuidesStudyIsRead) {
   EXPECT_EQ(study.session.demographics[1].choices, (std::vector<std::string>{"no", "yes"}));
   const auto runs = ArcExperiment(study, {}, 50).runs();
   ASSERT_EQ(runs.size(), 8u * 2 * 2);
-  for (std::size_t k = 0; k < runs.size(); ++k) EXPECT_EQ(runs[k].condition, k % 2 == 0 ? "low-curvature" : "edge");  // as listed
+  // as listed
+  for (std::size_t k = 0; k < runs.size(); ++k) EXPECT_EQ(runs[k].condition, k % 2 == 0 ? "low-curvature" : "edge");
   ArcStudy again = backlashStudy();
   parseStudy(studyJson(study), "again", again);
   EXPECT_EQ(again.session, study.session);
@@ -118,10 +121,11 @@ TEST(SurveyFile, NamesWhatIsWrongAndWhere) {
                        "session.survey[1]: the name a is there twice"));
   EXPECT_TRUE(contains(error(R"({"survey": [{"name": "a", "text": "A"}, {"name": "a", "text": "B"}]})"), "f.json:2: "));
   EXPECT_TRUE(contains(error(R"({"survey": [{"name": "a", "text": "A", "low": 3, "high": 3}]})"), "isn't below"));
-  EXPECT_TRUE(
-      contains(error(R"({"survey": [{"name": "a", "text": "A", "kind": "choice", "choices": ["x"]}]})"), "a choice of one is none"));
+  EXPECT_TRUE(contains(error(R"({"survey": [{"name": "a", "text": "A", "kind": "choice", "choices": ["x"]}]})"),
+                       "a choice of one is none"));
   EXPECT_TRUE(contains(error(R"({"survay": []})"), "survey"));
-  EXPECT_TRUE(contains(errorOf([] { parseStudyFile(R"({"session": {"blocks": 2}})", "f.json"); }), "session.blocks = 2"));
+  EXPECT_TRUE(
+      contains(errorOf([] { parseStudyFile(R"({"session": {"blocks": 2}})", "f.json"); }), "session.blocks = 2"));
 }
 
 // What nobody changed isn't written: sessions of before surveys keep their protocol to the byte.

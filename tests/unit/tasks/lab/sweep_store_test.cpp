@@ -28,8 +28,10 @@ constexpr std::size_t kCases = 13;
 // Three numbers, and one case that can't be run.
 SweepJob someJob() {
   SweepGrid grid{{"sphere.mass", "sphere.material.mu_s", "duration"}, {}};
-  for (std::size_t i = 0; i < kCases; ++i) grid.points.push_back({i == 4 ? -1 : 0.05 * static_cast<double>(i + 1), 0.3, 0.03});
-  return sceneSweep(parseSceneOrBuiltin("s4_pinch"), sceneText("s4_pinch"), {grid, {"sphere.p_z", "left.normal_force:max", "energy"}});
+  for (std::size_t i = 0; i < kCases; ++i)
+    grid.points.push_back({i == 4 ? -1 : 0.05 * static_cast<double>(i + 1), 0.3, 0.03});
+  return sceneSweep(parseSceneOrBuiltin("s4_pinch"), sceneText("s4_pinch"),
+                    {grid, {"sphere.p_z", "left.normal_force:max", "energy"}});
 }
 
 // Runs a shard until `most` further cases are whole, as a kill would leave it; true: its end was reached.
@@ -131,8 +133,9 @@ TEST(SweepMachines, QuoteWhatAShellWouldTake) {
   EXPECT_EQ(shellText({"pincer", "a b", "it's", "mu=0.1:0.5:9", "conditions[1].x=1", ""}),
             "pincer 'a b' 'it'\\''s' mu=0.1:0.5:9 'conditions[1].x=1' ''");
   const MachinePlan plan{{"pincer", "sweep", "s4_pinch", "--vary", "sphere.mass=1,2"}, "out/x", 3, 2, "0:10:00"};
-  EXPECT_TRUE(contains(parallelFile(plan),
-                       "\npincer sweep s4_pinch --vary sphere.mass=1,2 --threads 2 --shard 3/3 --out out/x/shard-3 --resume\n"));
+  EXPECT_TRUE(contains(
+      parallelFile(plan),
+      "\npincer sweep s4_pinch --vary sphere.mass=1,2 --threads 2 --shard 3/3 --out out/x/shard-3 --resume\n"));
   EXPECT_TRUE(contains(slurmFile(plan), "#SBATCH --array=1-3\n"));
   EXPECT_TRUE(contains(slurmFile(plan), "#SBATCH --time=0:10:00\n"));
 }
@@ -146,7 +149,8 @@ TEST(SweepCommand, RunsShardsAndMergesThem) {
     return tests::runPincer(all);
   };
   EXPECT_EQ(sweep({"--out", dir / "whole"}).exit_code, kExitCheckFailed) << "a case can't be run";
-  for (const char* shard : {"1/2", "2/2"}) sweep({"--shard", shard, "--out", dir / fmt::format("shard-{}", shard[0]), "--resume"});
+  for (const char* shard : {"1/2", "2/2"})
+    sweep({"--shard", shard, "--out", dir / fmt::format("shard-{}", shard[0]), "--resume"});
   const auto merged = tests::runPincer({"sweep", "merge", dir / "shard-2", dir / "shard-1", "--out", dir / "merged"});
   EXPECT_EQ(merged.exit_code, kExitOk) << merged.error;
   for (const char* name : {"sweep.csv", "sweep.db", "sweep.svg"})
@@ -154,8 +158,8 @@ TEST(SweepCommand, RunsShardsAndMergesThem) {
   EXPECT_EQ(sweep({"--out", dir / "h5", "--format", "hdf5"}).exit_code, kExitCheckFailed);
   sweep({"--out", dir / "h5-again", "--format", "hdf5"});
   EXPECT_EQ(readFile(dir / "h5/sweep.h5"), readFile(dir / "h5-again/sweep.h5"));
-  for (const std::vector<std::string>& wrong :
-       std::vector<std::vector<std::string>>{{"--shard", "3/2", "--out", "x"}, {"--shard", "1/2"}, {"--resume"}, {"--cases", "c.csv"}}) {
+  for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
+           {"--shard", "3/2", "--out", "x"}, {"--shard", "1/2"}, {"--resume"}, {"--cases", "c.csv"}}) {
     EXPECT_EQ(sweep(wrong).exit_code, kExitUsage) << wrong[0];
   }
 }

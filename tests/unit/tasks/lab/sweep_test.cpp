@@ -32,16 +32,20 @@ TEST(Variation, IsReadAsItIsWritten) {
   EXPECT_EQ(parseVariation("a=1:2:5").values, (std::vector<double>{1, 1.25, 1.5, 1.75, 2}));
   const std::vector<double> decades = parseVariation("a=0.001:10:5:log").values;
   ASSERT_EQ(decades.size(), 5u);
-  for (int i = 0; i < 5; ++i) EXPECT_NEAR(decades[static_cast<std::size_t>(i)], std::pow(10.0, i - 3), 1e-12 * std::pow(10.0, i - 3));
+  for (int i = 0; i < 5; ++i)
+    EXPECT_NEAR(decades[static_cast<std::size_t>(i)], std::pow(10.0, i - 3), 1e-12 * std::pow(10.0, i - 3));
   EXPECT_EQ(decades.back(), 10);
-  for (const char* wrong : {"a", "a=", "=1", "a=x", "a=1:2", "a=1:2:1", "a=1:2:2.5", "a=0:2:3:log", "a=1:2:3:lin", "a=1,,2", "a=nan"}) {
+  for (const char* wrong :
+       {"a", "a=", "=1", "a=x", "a=1:2", "a=1:2:1", "a=1:2:2.5", "a=0:2:3:log", "a=1:2:3:lin", "a=1,,2", "a=nan"}) {
     EXPECT_TRUE(contains(errorOf([&] { parseVariation(wrong); }), "Write PATH=")) << wrong;
   }
 }
 
-// 0.1 + 0.5 (0.5 - 0.1) is 0.30000000000000004: a shard's row differed from the whole sweep's in the last digit of how it was written.
+// 0.1 + 0.5 (0.5 - 0.1) is 0.30000000000000004: a shard's row differed from the whole sweep's
+// in the last digit of how it was written.
 TEST(Variation, HasTheValuesThatAPersonWouldWrite) {
-  EXPECT_EQ(parseVariation("a=0.1:0.5:9").values, (std::vector<double>{0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5}));
+  EXPECT_EQ(parseVariation("a=0.1:0.5:9").values,
+            (std::vector<double>{0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5}));
   EXPECT_EQ(parseVariation("a=-0.3:0.3:7").values, (std::vector<double>{-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.3}));
   EXPECT_EQ(parseVariation("a=0:1:4").values[1], 0.33333333333333);  // 14 places: of numbers up to 1
   EXPECT_EQ(parseVariation("a=1e-9:3e-9:3").values[1], 2e-9);
@@ -54,8 +58,10 @@ RC_GTEST_PROP(Variation, WritesDecimalStepsPlainly, ()) {
   const int from = *rc::gen::inRange(-1000, 1000), step = *rc::gen::inRange(1, 100), count = *rc::gen::inRange(2, 50);
   const int scale = *rc::gen::inRange(0, 4);
   const auto written = [&](int k) { return fmt::format("{}e-{}", from + k * step, scale); };
-  const std::vector<double> values = parseVariation(fmt::format("a={}:{}:{}", written(0), written(count - 1), count)).values;
-  for (int k = 0; k < count; ++k) RC_ASSERT(values[static_cast<std::size_t>(k)] == std::strtod(written(k).c_str(), nullptr));
+  const std::vector<double> values =
+      parseVariation(fmt::format("a={}:{}:{}", written(0), written(count - 1), count)).values;
+  for (int k = 0; k < count; ++k)
+    RC_ASSERT(values[static_cast<std::size_t>(k)] == std::strtod(written(k).c_str(), nullptr));
 }
 
 TEST(Variation, OfSeveralMakesEveryCombination) {
@@ -103,7 +109,8 @@ TEST(JsonChange, SetsTheNumberThatThePathNames) {
   EXPECT_EQ(ballWith("ball.mass", 0.3).bodies[1].mass, 0.3);
   EXPECT_EQ(ballWith("bodies[1].mass", 0.3).bodies[1].mass, 0.3);
   EXPECT_EQ(ballWith("ball.position[2]", 0.5).starts[1].X_WB.p.z(), 0.5);
-  EXPECT_EQ(ballWith("ball.material.mu_s", 0.7).bodies[1].material.mu_s, 0.7) << "neither object nor key is in the file";
+  EXPECT_EQ(ballWith("ball.material.mu_s", 0.7).bodies[1].material.mu_s, 0.7)
+      << "neither object nor key is in the file";
   EXPECT_EQ(ballWith("tick", 0.002).options.h, 0.002);
 }
 
@@ -111,7 +118,8 @@ TEST(JsonChange, SaysWhatIsWrongWithAPathOrValue) {
   const auto said = [](const char* path, double value = 1) { return errorOf([&] { ballWith(path, value); }); };
   EXPECT_TRUE(contains(said("bal.mass"), "Did you mean \"ball\"?")) << said("bal.mass");
   EXPECT_TRUE(contains(said("ball.mas"), "Did you mean \"mass\"?")) << said("ball.mas");
-  EXPECT_TRUE(contains(said("ball.mass", -1), "ball.json:3: bodies[1].mass = -1 is out of range")) << said("ball.mass", -1);
+  EXPECT_TRUE(contains(said("ball.mass", -1), "ball.json:3: bodies[1].mass = -1 is out of range"))
+      << said("ball.mass", -1);
   EXPECT_TRUE(contains(said("ball.name"), "is no number")) << said("ball.name");
   EXPECT_TRUE(contains(said("ball.position[3]"), "has 3 elements")) << said("ball.position[3]");
   EXPECT_TRUE(contains(said("ball.mass[0]"), "a list in brackets")) << said("ball.mass[0]");
@@ -123,7 +131,8 @@ TEST(JsonChange, SaysWhatIsWrongWithAPathOrValue) {
 SweepJob pinchJob(const std::vector<std::string>& vary, std::vector<std::string> measures) {
   std::vector<Variation> variations;
   for (const std::string& text : vary) variations.push_back(parseVariation(text));
-  return sceneSweep(parseSceneOrBuiltin("s4_pinch"), sceneText("s4_pinch"), {crossed(variations, kMostSceneCases), std::move(measures)});
+  return sceneSweep(parseSceneOrBuiltin("s4_pinch"), sceneText("s4_pinch"),
+                    {crossed(variations, kMostSceneCases), std::move(measures)});
 }
 
 SweepTable ran(SweepJob job, const SweepOptions& options = {}) {
@@ -134,11 +143,13 @@ SweepTable ran(SweepJob job, const SweepOptions& options = {}) {
 SweepTable pinchSweep(int threads) {
   SweepOptions options;
   options.threads = threads;
-  return ran(pinchJob({"sphere.material.mu_s=0.20:0.28:9", "duration=0.02"}, {"sphere.p_z", "left.normal_force:max"}), options);
+  return ran(pinchJob({"sphere.material.mu_s=0.20:0.28:9", "duration=0.02"}, {"sphere.p_z", "left.normal_force:max"}),
+             options);
 }
 
-// At which friction does the grasp begin to slip? mu* = m g / 2 F = 0.24525. Below it the sphere falls, and the fingers, L from its middle, push it
-// on the faster the lower it is: m z'' = m g - 2 F mu + 2 F (1 + mu^2) z / L, to first order in z.
+// At which friction does the grasp begin to slip? mu* = m g / 2 F = 0.24525. Below it the sphere
+// falls, and the fingers, L from its middle, push it on the faster the lower it is: m z'' = m g - 2 F
+// mu + 2 F (1 + mu^2) z / L, to first order in z.
 TEST(SceneSweep, TellsAtWhichFrictionThePinchBeginsToSlip) {
   constexpr double kTime = 0.02, kForce = 2, kMass = 0.1, kArm = 0.028;
   const SweepTable table = pinchSweep(2);
@@ -147,7 +158,8 @@ TEST(SceneSweep, TellsAtWhichFrictionThePinchBeginsToSlip) {
     const double mu = table.points[i][0], fall = std::max(0.0, 9.81 - 2 * mu * kForce / kMass);
     const double rate = std::sqrt(2 * kForce * (1 + mu * mu) / (kMass * kArm));
     const double drop = fall / (rate * rate) * (std::cosh(rate * kTime) - 1);
-    EXPECT_NEAR(table.results[i].values[0], 0.1 - drop, 0.01 * drop + 1e-12) << mu;  // what is left out: z^2, and the fingers' own mass
+    // what is left out: z^2, and the fingers' own mass
+    EXPECT_NEAR(table.results[i].values[0], 0.1 - drop, 0.01 * drop + 1e-12) << mu;
     EXPECT_NEAR(table.results[i].values[1], 2, 0.01) << mu;
     EXPECT_EQ(table.results[i].values[2] > 0, fall > 0) << "the scene expects it to be held";
   }
@@ -200,11 +212,13 @@ TEST(SceneSweep, StopsWhereItIsInterrupted) {
 // A success is held for a second; some of eight spheres are up within half a minute.
 TEST(StudySweep, TellsThatNobodyPicksUpASphereWithinASecond) {
   StudySweep sweep;
-  sweep.grid = crossed({parseVariation("sphere_pickup.timeout=1,30"), parseVariation("sphere_pickup.repetitions=1")}, kMostStudyCases);
+  sweep.grid = crossed({parseVariation("sphere_pickup.timeout=1,30"), parseVariation("sphere_pickup.repetitions=1")},
+                       kMostStudyCases);
   sweep.participants = 1;
   const SweepTable table = ran(studySweep("sphere-pickup", sweep));
-  const auto column = std::find(table.measures.begin(), table.measures.end(), "spheres picked up within the time, CLD + force [%]") -
-                      table.measures.begin();
+  const auto column =
+      std::find(table.measures.begin(), table.measures.end(), "spheres picked up within the time, CLD + force [%]") -
+      table.measures.begin();
   ASSERT_LT(column, static_cast<std::ptrdiff_t>(table.measures.size()));
   EXPECT_EQ(table.results[0].values[static_cast<std::size_t>(column)], 0);
   EXPECT_GT(table.results[1].values[static_cast<std::size_t>(column)], 0);
@@ -235,7 +249,9 @@ TEST(OneFingerSweep, EachPointIsTheStudyWithItsNumber) {
     Answers answers;
     runStudy(experiment, study.seed, {}, answers, kNever);
     EXPECT_EQ(answers.count, 5 * repetitions);
-    EXPECT_NEAR(table.results[static_cast<std::size_t>(repetitions - 1)].values[0], 1e3 * answers.sum / answers.count, 1e-9);  // [mm]
+    // [mm]
+    EXPECT_NEAR(table.results[static_cast<std::size_t>(repetitions - 1)].values[0], 1e3 * answers.sum / answers.count,
+                1e-9);
   }
   sweep.grid = crossed({parseVariation("repetition=1")}, kMostStudyCases);
   EXPECT_TRUE(contains(errorOf([&] { oneFingerSweep("repeated-localisation", sweep); }), "Did you mean"));
@@ -243,16 +259,16 @@ TEST(OneFingerSweep, EachPointIsTheStudyWithItsNumber) {
 
 TEST(SweepCommand, WritesTableAndPicture) {
   const tests::TemporaryDirectory dir;
-  const auto done = tests::runPincer({"sweep", "s4_pinch", "--vary", "sphere.material.mu_s=0.2,0.3", "--vary", "duration=0.05,0.1",
-                                      "--measure", "sphere.p_z", "--out", dir / "out"});
+  const auto done = tests::runPincer({"sweep", "s4_pinch", "--vary", "sphere.material.mu_s=0.2,0.3", "--vary",
+                                      "duration=0.05,0.1", "--measure", "sphere.p_z", "--out", dir / "out"});
   EXPECT_EQ(done.exit_code, kExitOk) << done.error;
   for (const char* name : {"sweep.csv", "sweep.png", "sweep.svg"})
     EXPECT_GT(std::filesystem::file_size(dir / "out" + "/" + name), 100u) << name;
   EXPECT_TRUE(contains(done.out, "sphere.p_z [m]")) << done.out;
   EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch"}).exit_code, kExitUsage);
   EXPECT_EQ(tests::runPincer({"sweep", "s4_pinch", "--vary", "sphere.mass=much"}).exit_code, kExitUsage);
-  const auto three =
-      tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=0.01", "--vary", "tick=0.001", "--vary", "sphere.mass=1,2"});
+  const auto three = tests::runPincer(
+      {"sweep", "s4_pinch", "--vary", "duration=0.01", "--vary", "tick=0.001", "--vary", "sphere.mass=1,2"});
   EXPECT_EQ(three.exit_code, kExitOk) << three.error;
   const auto again = tests::runPincer({"sweep", "s4_pinch", "--vary", "duration=1", "--out", dir / "out"});
   EXPECT_EQ(again.exit_code, kExitBadInput);

@@ -19,7 +19,8 @@ TEST(ColumnMeanings, EveryColumnIsDescribed) {
     tables.insert(c.table);
     EXPECT_GE(c.meaning.description.size(), 7u) << c.table << "." << c.column;
     EXPECT_NE(c.meaning.description, c.column);
-    for (const auto& [value, means] : c.meaning.levels) EXPECT_FALSE(value.empty() || means.empty()) << c.table << "." << c.column;
+    for (const auto& [value, means] : c.meaning.levels)
+      EXPECT_FALSE(value.empty() || means.empty()) << c.table << "." << c.column;
   }
   EXPECT_EQ(tables.size(), 9u);
 }
@@ -53,11 +54,14 @@ TEST(ColumnMeanings, ExportsCountFromOne) {
   const std::string stem = dir / "bids/sub-01/beh/sub-01_task-spherepickup_beh";
   EXPECT_TRUE(tests::contains(tests::readFile(stem + ".tsv"), "\n1\tsphere-pickup\tsub-01\tforce\t0\t1\t"));
   const std::string sidecar = tests::readFile(stem + ".json");
-  EXPECT_TRUE(tests::contains(sidecar, "\"grip_ratio\": {\"Description\": \"grip while held over the smallest that holds"));
-  EXPECT_TRUE(tests::contains(sidecar,
-                              "\"training\": {\"Description\": \"before the counted trials, left out of all results\", \"Levels\": "
-                              "{\"0\": \"no\", \"1\": \"yes\"}}"));
-  EXPECT_TRUE(tests::contains(sidecar, "\"duration_s\": {\"Description\": \"from the start tone to the end\", \"Units\": \"s\"}"));
+  EXPECT_TRUE(
+      tests::contains(sidecar, "\"grip_ratio\": {\"Description\": \"grip while held over the smallest that holds"));
+  EXPECT_TRUE(tests::contains(
+      sidecar,
+      "\"training\": {\"Description\": \"before the counted trials, left out of all results\", \"Levels\": "
+      "{\"0\": \"no\", \"1\": \"yes\"}}"));
+  EXPECT_TRUE(tests::contains(
+      sidecar, "\"duration_s\": {\"Description\": \"from the start tone to the end\", \"Units\": \"s\"}"));
 }
 
 }  // namespace

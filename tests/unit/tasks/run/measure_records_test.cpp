@@ -28,8 +28,8 @@ TEST(Record, IsOkWhereItsRelationHolds) {
 }
 
 TEST(Record, NothingMeasuredIsNeverOk) {
-  for (const Record& r :
-       {atMost("a", kNan, "-", 1), atLeast("a", kNan, "-", 1), exactly("a", kNan, "-", kNan), unbounded("a", kNan, "-")}) {
+  for (const Record& r : {atMost("a", kNan, "-", 1), atLeast("a", kNan, "-", 1), exactly("a", kNan, "-", kNan),
+                          unbounded("a", kNan, "-")}) {
     EXPECT_FALSE(r.ok);
   }
   EXPECT_FALSE(allOk({unbounded("a", 1, "-"), unbounded("b", kNan, "-")}));
@@ -37,7 +37,8 @@ TEST(Record, NothingMeasuredIsNeverOk) {
 }
 
 TEST(Record, JsonHasAllMembersAndNullForWhatIsNoNumber) {
-  const JsonValue json = parseJson(recordJson({atMost("slip", 0.5, "um", 1), unbounded("peer", kNan, "us")}), "records");
+  const JsonValue json =
+      parseJson(recordJson({atMost("slip", 0.5, "um", 1), unbounded("peer", kNan, "us")}), "records");
   ASSERT_EQ(json.array().size(), 2u);
   const JsonValue& first = json.array()[0];
   EXPECT_EQ(first.at("metric").text(), "slip");

@@ -1,4 +1,5 @@
-// The MJCF reader: what it makes of good files, by closed forms and by the rules of the format, and a line of complaint for each bad one.
+// The MJCF reader: what it makes of good files, by closed forms and by the rules of the format,
+// and a line of complaint for each bad one.
 #include "pincer/tasks/run/robot/mjcf.h"
 
 #include <fmt/format.h>
@@ -30,14 +31,17 @@ class MjcfReader : public ::testing::Test {
     std::ofstream(folder_ / name) << text;
     return folder_ / name;
   }
-  RobotImport read(const std::string& inside) { return readMjcf(write("robot.xml", "<mujoco model=\"test\">\n" + inside + "\n</mujoco>")); }
+  RobotImport read(const std::string& inside) {
+    return readMjcf(write("robot.xml", "<mujoco model=\"test\">\n" + inside + "\n</mujoco>"));
+  }
   Robot robot(const std::string& inside) { return read(inside).robot; }
   std::string complaint(const std::string& inside) {
     return tests::errorOf([&] { read(inside); });
   }
   // A body with a joint and a ball of 1 kg; `geom` adds attributes.
   static std::string body(const std::string& joint, const std::string& attributes = "") {
-    return "<worldbody><body name=\"a\" " + attributes + ">" + joint + "<geom name=\"g\" size=\".1\" mass=\"1\"/></body></worldbody>";
+    return "<worldbody><body name=\"a\" " + attributes + ">" + joint +
+           "<geom name=\"g\" size=\".1\" mass=\"1\"/></body></worldbody>";
   }
 
   tests::TemporaryDirectory folder_;
@@ -56,8 +60,8 @@ TEST_F(MjcfReader, ClassesInheritWhateverTheirOrderInTheFile) {
 }
 
 TEST_F(MjcfReader, AnElementsOwnClassBeatsThatOfItsBody) {
-  const Robot r =
-      robot(R"(<default><default class="x"><joint damping="1"/></default><default class="y"><joint damping="2"/></default></default>
+  const Robot r = robot(
+      R"(<default><default class="x"><joint damping="1"/></default><default class="y"><joint damping="2"/></default></default>
     <worldbody><body childclass="x"><joint name="j" class="y"/><geom size=".1"/></body></worldbody>)");
   EXPECT_EQ(r.bodies.at(0).joints.at(0).damping, 2);
 }
@@ -76,7 +80,8 @@ TEST_F(MjcfReader, AnglesAreDegreesUnlessTheCompilerSaysOtherwise) {
 
 TEST_F(MjcfReader, FiveWaysToSayOneTurn) {
   // A quarter turn about z.
-  for (const std::string turn : {"quat=\"1 0 0 1\"", "axisangle=\"0 0 2 90\"", "euler=\"0 0 90\"", "xyaxes=\"0 3 0 -1 1 0\""}) {
+  for (const std::string turn :
+       {"quat=\"1 0 0 1\"", "axisangle=\"0 0 2 90\"", "euler=\"0 0 90\"", "xyaxes=\"0 3 0 -1 1 0\""}) {
     const Robot r = robot(body("<joint/>", turn));
     EXPECT_LT((r.bodies.at(0).X_PB.q * Vec3::UnitX() - Vec3::UnitY()).norm(), kRoundOff) << turn;
   }
@@ -88,8 +93,9 @@ TEST_F(MjcfReader, FiveWaysToSayOneTurn) {
 TEST_F(MjcfReader, EulerAnglesTurnAboutAxesThatMoveOrStandStill) {
   const Robot moving = robot("<compiler eulerseq=\"xyz\"/>" + body("<joint/>", "euler=\"90 90 0\""));
   const Robot still = robot("<compiler eulerseq=\"XYZ\"/>" + body("<joint/>", "euler=\"90 90 0\""));
-  EXPECT_LT((moving.bodies.at(0).X_PB.q * Vec3::UnitX() - Vec3::UnitY()).norm(), kRoundOff);  // x, by y to -z, by x to y
-  EXPECT_LT((still.bodies.at(0).X_PB.q * Vec3::UnitX() + Vec3::UnitZ()).norm(), kRoundOff);   // x, by x to x, by y to -z
+  // x, by y to -z, by x to y
+  EXPECT_LT((moving.bodies.at(0).X_PB.q * Vec3::UnitX() - Vec3::UnitY()).norm(), kRoundOff);
+  EXPECT_LT((still.bodies.at(0).X_PB.q * Vec3::UnitX() + Vec3::UnitZ()).norm(), kRoundOff);  // x, by x to x, by y to -z
 }
 
 TEST_F(MjcfReader, FramesMoveWhatStandsInThem) {
@@ -102,7 +108,8 @@ TEST_F(MjcfReader, FramesMoveWhatStandsInThem) {
 }
 
 TEST_F(MjcfReader, ACapsuleBetweenTwoPoints) {
-  const Robot r = robot("<worldbody><body><geom type=\"capsule\" fromto=\"0 0 0 0 3 4\" size=\".5\"/></body></worldbody>");
+  const Robot r =
+      robot("<worldbody><body><geom type=\"capsule\" fromto=\"0 0 0 0 3 4\" size=\".5\"/></body></worldbody>");
   const RobotGeom& geom = r.bodies.at(0).geoms.at(0);
   EXPECT_LT((geom.X_BG.p - Vec3(0, 1.5, 2)).norm(), kRoundOff);
   EXPECT_NEAR(geom.half[1], 2.5, kRoundOff);
@@ -110,7 +117,8 @@ TEST_F(MjcfReader, ACapsuleBetweenTwoPoints) {
 }
 
 TEST_F(MjcfReader, VisibleGeomsWeighUnlessTheirMassOrDensityIs0) {
-  const Robot r = robot(R"(<worldbody><body><geom type="box" size=".1 .2 .3" contype="0" conaffinity="0"/><geom size=".1" density="0"/>
+  const Robot r = robot(
+      R"(<worldbody><body><geom type="box" size=".1 .2 .3" contype="0" conaffinity="0"/><geom size=".1" density="0"/>
     <geom size=".1" mass="0"/></body></worldbody>)");
   const engine::MassProperties& m = r.bodies.at(0).inertia;
   EXPECT_NEAR(m.mass, 48, 48 * kRoundOff);  // 0.2 x 0.4 x 0.6 m of 1000 kg/m^3
@@ -133,7 +141,8 @@ TEST_F(MjcfReader, AMeshOfACubeWeighsAsTheBox) {
   const std::string cube = R"(vertex="-1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1"
     face="0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7")";
   const auto massOf = [&](const std::string& rule) {
-    return robot("<asset><mesh name=\"m\" " + cube + " inertia=\"" + rule + "\" scale=\"1 1 .5\"/></asset><worldbody><body>" +
+    return robot("<asset><mesh name=\"m\" " + cube + " inertia=\"" + rule +
+                 "\" scale=\"1 1 .5\"/></asset><worldbody><body>" +
                  "<geom type=\"mesh\" mesh=\"m\" density=\"3\" pos=\"0 0 7\"/></body></worldbody>")
         .bodies.at(0)
         .inertia;
@@ -144,7 +153,8 @@ TEST_F(MjcfReader, AMeshOfACubeWeighsAsTheBox) {
     EXPECT_LT((m.p_BBcm - Vec3(0, 0, 7)).norm(), 100 * kRoundOff) << rule;
     EXPECT_NEAR(m.I_BBcm(0, 0), 12 / 12.0 * (4 + 1), 100 * kRoundOff) << rule;
   }
-  // Six faces of 2 x 2 and 2 x 1: area 16; of the z axis: 2 faces of 4 with (4 + 4)/12, 4 faces of 2 at distance 1 with 1 + 4/12.
+  // Six faces of 2 x 2 and 2 x 1: area 16; of the z axis: 2 faces of 4 with (4 + 4)/12,
+  // 4 faces of 2 at distance 1 with 1 + 4/12.
   const engine::MassProperties shell = massOf("shell");
   EXPECT_NEAR(shell.mass, 3 * 16, 100 * kRoundOff);
   EXPECT_NEAR(shell.I_BBcm(2, 2), 3 * (2 * 4 * 8 / 12.0 + 4 * 2 * (1 + 4 / 12.0)), 1000 * kRoundOff);
@@ -152,7 +162,8 @@ TEST_F(MjcfReader, AMeshOfACubeWeighsAsTheBox) {
 
 TEST_F(MjcfReader, APositionsDefaultChangesGeneral) {
   const Robot r = robot(
-      R"(<default><default class="c"><position kp="7" kv="2" forcerange="-3 3"/></default></default>)" + body("<joint name=\"j\"/>") +
+      R"(<default><default class="c"><position kp="7" kv="2" forcerange="-3 3"/></default></default>)" +
+      body("<joint name=\"j\"/>") +
       R"(<actuator><general class="c" joint="j"/><motor joint="j"/><velocity kv="5" joint="j"/><position class="c" kp="9" joint="j"/></actuator>)");
   EXPECT_EQ(r.drives.at(0).gain, 7);
   EXPECT_EQ(r.drives.at(0).bias, Vec3(0, -7, -2));
@@ -187,7 +198,8 @@ TEST_F(MjcfReader, JointsOfOneBodyMoveItOneAfterTheOther) {
 
 TEST_F(MjcfReader, IncludedFilesStandWhereTheyAreIncluded) {
   write("part.xml", "<mujocoinclude><body name=\"b\"><geom size=\".1\"/></body></mujocoinclude>");
-  const Robot r = robot("<worldbody><body name=\"a\"><geom size=\".1\"/><include file=\"part.xml\"/></body></worldbody>");
+  const Robot r =
+      robot("<worldbody><body name=\"a\"><geom size=\".1\"/><include file=\"part.xml\"/></body></worldbody>");
   ASSERT_EQ(r.bodies.size(), 2u);
   EXPECT_EQ(r.bodies[1].parent, 0);
 }
@@ -195,7 +207,8 @@ TEST_F(MjcfReader, IncludedFilesStandWhereTheyAreIncluded) {
 TEST_F(MjcfReader, FilesThatIncludeEachOtherAreRefused) {
   write("a.xml", "<x><include file=\"b.xml\"/></x>");
   write("b.xml", "<x><include file=\"a.xml\"/></x>");
-  EXPECT_NE(complaint("<include file=\"a.xml\"/>").find("b.xml:1: <include> includes a.xml, which includes this one"), std::string::npos);
+  EXPECT_NE(complaint("<include file=\"a.xml\"/>").find("b.xml:1: <include> includes a.xml, which includes this one"),
+            std::string::npos);
   EXPECT_NE(complaint("<include file=\"robot.xml\"/>").find("which includes this one"), std::string::npos);
 }
 
@@ -203,23 +216,27 @@ TEST_F(MjcfReader, FilesOutsideOfTheFolderAreRefused) {
   const std::string message = complaint("<include file=\"/etc/passwd\"/>");
   EXPECT_NE(message.find("lies outside of the model's folder"), std::string::npos) << message;
   EXPECT_NE(complaint("<include file=\"../../../../../etc/passwd\"/>").find("outside"), std::string::npos);
-  EXPECT_NE(complaint("<asset><mesh file=\"gone.stl\"/></asset>").find("robot.xml:2: <mesh> names the file \"gone.stl\""),
-            std::string::npos);
+  EXPECT_NE(
+      complaint("<asset><mesh file=\"gone.stl\"/></asset>").find("robot.xml:2: <mesh> names the file \"gone.stl\""),
+      std::string::npos);
 }
 
 TEST_F(MjcfReader, ComplaintsNameLineAndRemedy) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {body("<joint class=\"x\"/>"), "is of class \"x\", and no <default> has that name."},
-      {body("<joint rang=\"1 2\"/>"), "has the attribute \"rang\", which MJCF doesn't know there. Did you mean \"range\"?"},
+      {body("<joint rang=\"1 2\"/>"),
+       "has the attribute \"rang\", which MJCF doesn't know there. Did you mean \"range\"?"},
       {body("<joint range=\"2 1\"/>"), "range=\"2 1\" has its ends the wrong way round."},
       {body("<joint stiffness=\"1 2\"/>"), "isn't linear"},
       {body("<joint axis=\"0 0 0\"/>"), "has no length"},
       {body("<joint axis=\"0 nan 1\"/>"), "which isn't a finite number"},
       {body("<joint axis=\"0 1\"/>"), "has 2 numbers where 3 are wanted."},
-      {body("<joint springdamper=\"1 1\"/>"), "has the attribute \"springdamper\", which isn't taken. Give stiffness and damping."},
+      {body("<joint springdamper=\"1 1\"/>"),
+       "has the attribute \"springdamper\", which isn't taken. Give stiffness and damping."},
       {body("<joint name=\"j\"/><joint name=\"j\"/>"), "is the second joint called \"j\"."},
       {body("", "mocap=\"yes\""), "is none of the words that go there."},
-      {"<worldbody><body><geom type=\"box\" size=\"1 1\"/></body></worldbody>", "of type box needs a size of 3 numbers."},
+      {"<worldbody><body><geom type=\"box\" size=\"1 1\"/></body></worldbody>",
+       "of type box needs a size of 3 numbers."},
       {"<worldbody><body><geom size=\"-1\"/></body></worldbody>", "and sizes are positive."},
       {"<worldbody><geom type=\"mesh\" mesh=\"m\"/></worldbody>", "is the name of no mesh"},
       {"<worldbody><body quat=\"1 0 0 0\" euler=\"0 0 0\"/></worldbody>", "is turned in two ways."},
@@ -231,8 +248,10 @@ TEST_F(MjcfReader, ComplaintsNameLineAndRemedy) {
       {"<actuator><general joint=\"k\" dyntype=\"integrator\"/></actuator>", "is none of the words"},
       {body("<joint name=\"j\" type=\"ball\"/>") + "<tendon><fixed><joint joint=\"j\" coef=\"1\"/></fixed></tendon>",
        "joint=\"j\" is neither hinge nor slide"},
-      {body("<freejoint name=\"j\"/>") + "<equality><joint joint1=\"j\"/></equality>", "joint1=\"j\" is neither hinge nor slide"},
-      {body("<freejoint/>") + "<equality><weld body1=\"a\" relpose=\"0 0 0 1 0 0 0\"/></equality>", "draw the bodies as they are welded."},
+      {body("<freejoint name=\"j\"/>") + "<equality><joint joint1=\"j\"/></equality>",
+       "joint1=\"j\" is neither hinge nor slide"},
+      {body("<freejoint/>") + "<equality><weld body1=\"a\" relpose=\"0 0 0 1 0 0 0\"/></equality>",
+       "draw the bodies as they are welded."},
       {"<contact><exclude body1=\"a\" body2=\"b\"/></contact>", "is the name of no body."},
       {"<option><flag contact=\"disable\"/></option>", "can't be switched off"},
       {"<default class=\"a\"><default><joint/></default></default>", "needs the attribute \"class\""},
@@ -249,7 +268,8 @@ TEST_F(MjcfReader, ComplaintsNameLineAndRemedy) {
 
 TEST_F(MjcfReader, WhatHasNoEffectIsCounted) {
   const ImportNotes notes =
-      read(R"(<default><geom solref="1 1"/></default><worldbody><body><geom size=".1" solref="1 1" rgba="1 1 1 1"/></body></worldbody>
+      read(
+          R"(<default><geom solref="1 1"/></default><worldbody><body><geom size=".1" solref="1 1" rgba="1 1 1 1"/></body></worldbody>
     <sensor><clock/><clock/></sensor><visual><map/></visual>)")
           .notes;
   ASSERT_EQ(notes.all().size(), 2u);
@@ -260,7 +280,8 @@ TEST_F(MjcfReader, WhatHasNoEffectIsCounted) {
 }
 
 TEST_F(MjcfReader, VelocitiesAndTimesOfKeyframesAreCounted) {
-  const ImportNotes notes = read(body("<joint/>") + "<keyframe><key qvel=\"0\"/><key qvel=\"1\" time=\"2\"/></keyframe>").notes;
+  const ImportNotes notes =
+      read(body("<joint/>") + "<keyframe><key qvel=\"0\"/><key qvel=\"1\" time=\"2\"/></keyframe>").notes;
   ASSERT_EQ(notes.all().size(), 2u);
   EXPECT_EQ(notes.all()[0].what, "key qvel");
   EXPECT_EQ(notes.all()[1].what, "key time");
@@ -273,7 +294,9 @@ TEST_F(MjcfReader, ControlCharactersOfAFileDontReachTheTerminal) {
 }
 
 TEST_F(MjcfReader, ARelposeWithoutATurnWeldsAsDrawn) {
-  EXPECT_TRUE(robot(body("<freejoint/>") + "<equality><weld body1=\"a\" relpose=\"0 1 0 0 0 0 0\"/></equality>").loops.at(0).is_weld);
+  EXPECT_TRUE(robot(body("<freejoint/>") + "<equality><weld body1=\"a\" relpose=\"0 1 0 0 0 0 0\"/></equality>")
+                  .loops.at(0)
+                  .is_weld);
 }
 
 TEST_F(MjcfReader, AMeshOfCornersAloneIsTheirHull) {
@@ -287,7 +310,8 @@ TEST_F(MjcfReader, AMeshOfCornersAloneIsTheirHull) {
 
 // Moments 1, 1 and 4 are no body's.
 TEST_F(MjcfReader, MomentsAreBalancedWhereTheCompilerSaysSo) {
-  const Robot r = robot(R"(<compiler balanceinertia="true"/><worldbody><body><inertial mass="1" pos="0 0 0" diaginertia="1 1 4"/></body>
+  const Robot r = robot(
+      R"(<compiler balanceinertia="true"/><worldbody><body><inertial mass="1" pos="0 0 0" diaginertia="1 1 4"/></body>
     <body><inertial mass="1" pos="0 0 0" diaginertia="1 1 2"/></body></worldbody>)");
   EXPECT_LT((r.bodies.at(0).inertia.I_BBcm - 2 * Mat3::Identity()).norm(), kRoundOff);
   EXPECT_EQ(r.bodies.at(1).inertia.I_BBcm(2, 2), 2);
@@ -297,15 +321,18 @@ TEST(MjcfGrammar, HasEveryAttributeOnce) {
   for (const mjcf::GrammarRow& row : mjcf::grammar()) {
     std::set<std::string> seen;
     for (const std::string_view list : {row.read, row.looks, row.ignored, row.refused})
-      mjcf::forEachWord(list, [&](std::string_view w) { EXPECT_TRUE(seen.insert(std::string(w)).second) << row.name << " " << w; });
+      mjcf::forEachWord(
+          list, [&](std::string_view w) { EXPECT_TRUE(seen.insert(std::string(w)).second) << row.name << " " << w; });
     mjcf::forEachWord(row.parents, [&](std::string_view parent) {
       EXPECT_EQ(mjcf::findRow(parent, row.tag), &row) << row.tag << " within " << parent << " is two rows";
     });
-    EXPECT_EQ(row.verdict == mjcf::Verdict::kRefused, row.read.empty() && !row.reason.empty()) << row.name << ": a refusal says why";
+    EXPECT_EQ(row.verdict == mjcf::Verdict::kRefused, row.read.empty() && !row.reason.empty())
+        << row.name << ": a refusal says why";
   }
 }
 
-// The published grammar, where PINCER_MJCF_SCHEMA names it: each of its elements, in each of its places, and each of their attributes has a verdict.
+// The published grammar, where PINCER_MJCF_SCHEMA names it: each of its elements, in each of its places,
+// and each of their attributes has a verdict.
 class PublishedGrammar {
  public:
   explicit PublishedGrammar(const std::string& path) {
@@ -352,7 +379,8 @@ TEST(MjcfGrammar, KnowsThePublishedGrammar) {
   ASSERT_GT(published.elements.size(), 100u);
   int attributes = 0;
   std::set<std::string> seen;
-  const std::function<void(const std::string&, const mjcf::GrammarRow&)> check = [&](const std::string& name, const mjcf::GrammarRow& row) {
+  const std::function<void(const std::string&, const mjcf::GrammarRow&)> check = [&](const std::string& name,
+                                                                                     const mjcf::GrammarRow& row) {
     if (row.verdict != mjcf::Verdict::kRead || !seen.insert(std::string(row.name) + " " + name).second) return;
     const std::function<void(const std::string&)> checkAttributes = [&](const std::string& of) {
       for (const std::string& attribute : published.elements.at(of).attributes) {
@@ -367,7 +395,8 @@ TEST(MjcfGrammar, KnowsThePublishedGrammar) {
     };
     checkAttributes(name);
     for (const std::string& listed : published.elements.at(name).children) {
-      const std::string child = name == "mujoco" && listed == "body" ? "worldbody" : listed;  // the world is a body there
+      // the world is a body there
+      const std::string child = name == "mujoco" && listed == "body" ? "worldbody" : listed;
       const mjcf::GrammarRow* inner = mjcf::findRow(row.name, published.elements.at(child).tag);
       EXPECT_NE(inner, nullptr) << child << " within " << row.name;
       if (inner) check(child, *inner);

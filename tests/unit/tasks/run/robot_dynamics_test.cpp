@@ -1,4 +1,5 @@
-// M and C of robots from files, where PINCER_ROBOT_DYNAMICS names those that MuJoCo has in random poses (tests/robots/dynamics.mjs).
+// M and C of robots from files, where PINCER_ROBOT_DYNAMICS names those that MuJoCo has in
+// random poses (tests/robots/dynamics.mjs).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,14 +29,22 @@ struct MujocoPose {
   const JsonValue& json;
 
   double at(const char* key, const std::string& joint) const { return json.at(key).array()[joints.at(joint)].number(); }
-  double M(const std::string& a, const std::string& b) const { return json.at("M").array()[joints.at(a)].array()[joints.at(b)].number(); }
+  double M(const std::string& a, const std::string& b) const {
+    return json.at("M").array()[joints.at(a)].array()[joints.at(b)].number();
+  }
 };
 
 // One tree of the world that the robot becomes, in that pose.
 class TreeInPose {
  public:
-  TreeInPose(const engine::WorldModel& world, const TreeModel& tree, const engine::TreeBase& base, const MujocoPose& pose)
-      : world_(world), tree_(tree), pose_(pose), place_(tree), entries_(static_cast<std::size_t>(tree.entries)), C_(tree.before.size()) {
+  TreeInPose(const engine::WorldModel& world, const TreeModel& tree, const engine::TreeBase& base,
+             const MujocoPose& pose)
+      : world_(world),
+        tree_(tree),
+        pose_(pose),
+        place_(tree),
+        entries_(static_cast<std::size_t>(tree.entries)),
+        C_(tree.before.size()) {
     std::vector<double> q(static_cast<std::size_t>(tree.q_count)), v(tree.coordinates.size()), u(tree.before.size());
     for (std::size_t i = 0; i < v.size(); ++i) {
       q[static_cast<std::size_t>(tree.coordinates[i].q)] = pose.at("q", nameOf(i));
@@ -63,7 +72,8 @@ class TreeInPose {
   }
   double worstOfC() const {
     double worst = 0;
-    for (int c = 0; c < tree_.columnCount(); ++c) worst = std::max(worst, std::abs(C_[static_cast<std::size_t>(c)] - theirC(c)));
+    for (int c = 0; c < tree_.columnCount(); ++c)
+      worst = std::max(worst, std::abs(C_[static_cast<std::size_t>(c)] - theirC(c)));
     return worst;
   }
   double largestC() const {
@@ -73,7 +83,9 @@ class TreeInPose {
   }
 
  private:
-  const std::string& nameOf(std::size_t i) const { return world_.joints[static_cast<std::size_t>(tree_.coordinates[i].joint)].name; }
+  const std::string& nameOf(std::size_t i) const {
+    return world_.joints[static_cast<std::size_t>(tree_.coordinates[i].joint)].name;
+  }
   // Theirs, of the coordinates that follow a column.
   template <class F>
   double overColumn(int column, F f) const {
@@ -84,7 +96,8 @@ class TreeInPose {
     return sum;
   }
   double theirM(int a, int b) const {
-    return overColumn(a, [&](const std::string& x) { return overColumn(b, [&](const std::string& y) { return pose_.M(x, y); }); });
+    return overColumn(
+        a, [&](const std::string& x) { return overColumn(b, [&](const std::string& y) { return pose_.M(x, y); }); });
   }
   double theirC(int c) const {
     return overColumn(c, [&](const std::string& x) { return pose_.at("C", x); });
@@ -126,8 +139,10 @@ TEST(RobotDynamics, MassesAndForcesOfMotionAreMujocos) {
       largest_C = std::max(largest_C, ours.largestC());
     }
   }
-  std::printf("%s: M %.1e, C %.1e of %.2g N m\n", theirs.at("file").text().c_str(), worst_M, worst_C / largest_C, largest_C);
-  // MuJoCo turns the inertias of bodies that it sums up of geoms into principal axes to 1e-7 only (tests/robots/masses.py).
+  std::printf("%s: M %.1e, C %.1e of %.2g N m\n", theirs.at("file").text().c_str(), worst_M, worst_C / largest_C,
+              largest_C);
+  // MuJoCo turns the inertias of bodies that it sums up of geoms into principal
+  // axes to 1e-7 only (tests/robots/masses.py).
   const std::string text = tests::readFile(theirs.at("file").text());
   const double bound = countOf("<inertial", text) == countOf("<body ", text) ? 1e-9 : 2e-8;
   EXPECT_LE(worst_M, bound);

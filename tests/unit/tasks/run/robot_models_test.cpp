@@ -1,5 +1,5 @@
-// Robots in the style of public models, tests/robots/models: each is read with nothing refused, and whatever its drives are told, all
-// stays finite and ticks are solved.
+// Robots in the style of public models, tests/robots/models: each is read with nothing refused, and whatever its drives
+// are told, all stays finite and ticks are solved.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,15 +49,17 @@ TEST_P(RobotModels, StaySolvedAndFiniteWhateverTheirDrivesAreTold) {
     const std::uint32_t status = sim.tick().status;
     unsolved += (status & engine::kSolverNotConverged) != 0;
     ASSERT_EQ(status & ~engine::kSolverNotConverged, 0u) << "tick " << n;
-    for (const engine::BodyState& body : sim.state().world.bodies) ASSERT_TRUE(body.X_WI.p.allFinite() && body.v_W.allFinite());
+    for (const engine::BodyState& body : sim.state().world.bodies)
+      ASSERT_TRUE(body.X_WI.p.allFinite() && body.v_W.allFinite());
   }
   // Parts that stops and drives press against each other may contradict each other (docs/robots.md).
   EXPECT_LE(unsolved, kModelTicks / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Menagerie, RobotModels,
-                         ::testing::Values("actuators", "arm_gripper", "ball_free", "compiler", "contacts", "delta", "equalities",
-                                           "floating_base", "humanoid", "includes", "meshes", "mobile_base", "sprung"));
+                         ::testing::Values("actuators", "arm_gripper", "ball_free", "compiler", "contacts", "delta",
+                                           "equalities", "floating_base", "humanoid", "includes", "meshes",
+                                           "mobile_base", "sprung"));
 
 }  // namespace
 }  // namespace pincer::tasks

@@ -15,8 +15,10 @@
 namespace pincer::tasks {
 namespace {
 
-// Four bars in the plane of x and z: a crank of 60 mm, a coupler, a rocker, all drawn upright; the coupler's end is tied to the rocker's.
-const std::string kFourBar = R"(<mujoco model="bars"><compiler angle="radian"/><option gravity="0 0 -9.81" timestep="0.001"/>
+// Four bars in the plane of x and z: a crank of 60 mm, a coupler, a rocker, all drawn upright;
+// the coupler's end is tied to the rocker's.
+const std::string kFourBar =
+    R"(<mujoco model="bars"><compiler angle="radian"/><option gravity="0 0 -9.81" timestep="0.001"/>
   <default><joint axis="0 1 0" damping="1e-3"/><geom contype="0" conaffinity="0" type="capsule" size=".004"/></default>
   <worldbody><body name="frame"><geom type="box" size=".01 .01 .01"/>
     <body name="crank"><joint name="crank_turn" range="-3 3"/><geom fromto="0 0 0 0 0 .06"/>
@@ -80,7 +82,9 @@ TEST_F(RobotScenes, AJointThatIsGivenStaysWhereALoopIsClosed) {
 }
 
 TEST_F(RobotScenes, ALoopThatCantBeClosedIsASentence) {
-  const std::string message = tests::errorOf([&] { sceneOfText(kFourBar, {.start = {{"crank_turn", 0.4}, {"rocker_turn", -1.5}}}); });
+  const std::string message = tests::errorOf([&] {
+    sceneOfText(kFourBar, {.start = {{"crank_turn", 0.4}, {"rocker_turn", -1.5}}});
+  });
   EXPECT_NE(message.find("robot.xml:7: can't be closed from this pose"), std::string::npos) << message;
 }
 
@@ -109,7 +113,8 @@ TEST_F(RobotScenes, AControlIsCutOffAtTheEndsOfItsRange) {
   EXPECT_NE(crankAfter(0.5), crankAfter(0.4));
 }
 
-// Two carriages of 1 kg on one rail, tied by a spring of 50 N/m along q_1 + q_2 that is slack at 0.1 m; a motor pushes the first with 2 N.
+// Two carriages of 1 kg on one rail, tied by a spring of 50 N/m along q_1 + q_2 that is slack at
+// 0.1 m; a motor pushes the first with 2 N.
 TEST_F(RobotScenes, ATendonsSpringPullsAndAJointsRangeOfForcesHolds) {
   Simulation sim(sceneOfText(R"(<mujoco><option gravity="0 0 0" timestep="0.001"/>
     <worldbody><body name="a"><joint name="slide_a" type="slide" axis="1 0 0" damping="20" actuatorfrcrange="-2 2"/><geom size=".01" mass="1"/></body>
@@ -173,7 +178,8 @@ TEST_F(RobotScenes, ARobotOnAFreeBaseFallsAsItsCentreOfMassDoes) {
   const Vec3 start = centre();
   run(sim, 400);
   EXPECT_GT(std::abs(measured(sim, "elbow.position")), .1);  // it does swing
-  // The bodies of a microgram between sliders add 3e-9 kg to 3 kg where they hang on the base; the sum of the path is of 4th order.
+  // The bodies of a microgram between sliders add 3e-9 kg to 3 kg where they hang on the
+  // base; the sum of the path is of 4th order.
   EXPECT_LT((centre() - start - Vec3(0, 0, -9.81 * .16 / 2)).norm(), 1e-8);
 }
 

@@ -1,4 +1,5 @@
-// Joints with limits, springs and drives as scenes have them: what a file makes, what it may not say, and that it moves.
+// Joints with limits, springs and drives as scenes have them: what a file
+// makes, what it may not say, and that it moves.
 #include <gtest/gtest.h>
 
 #include "pincer/tasks/run/simulation.h"
@@ -23,7 +24,9 @@ std::string complaint(const std::string& json) {
   return "";
 }
 
-double measured(const Simulation& sim, const std::string& quantity) { return quantityOf(quantity, sim.scene()).measure(sim.moment()); }
+double measured(const Simulation& sim, const std::string& quantity) {
+  return quantityOf(quantity, sim.scene()).measure(sim.moment());
+}
 
 Simulation run(const std::string& json) {
   Simulation sim(parseScene(json, "s.json"));
@@ -39,7 +42,8 @@ TEST(SceneJoints, ACarriageIsDrivenHeldByFrictionAndStopped) {
   EXPECT_NEAR(measured(free, "rail.friction_force"), -1, 1e-12);
   EXPECT_NEAR(measured(free, "motor.force"), 1.4, 1e-12);
   const Simulation held = run(rail(R"(, "friction": 1)", motor + "0.9}]"));
-  EXPECT_NEAR(measured(held, "rail.position"), 0, 1e-15);  // round-off of a tick: 0.9 N/1 kg (1e-3 s)^2 times 1e-16, and some
+  // round-off of a tick: 0.9 N/1 kg (1e-3 s)^2 times 1e-16, and some
+  EXPECT_NEAR(measured(held, "rail.position"), 0, 1e-15);
   EXPECT_NEAR(measured(held, "rail.friction_force"), -0.9, 1e-9);
   const Simulation stopped = run(rail(R"(, "limits": [-1, 0.3])", motor + "3}]"));
   EXPECT_NEAR(measured(stopped, "rail.position"), 0.3, 1e-9);
@@ -60,8 +64,8 @@ TEST(SceneJoints, APlainJointHasAPosition) {
 }
 
 TEST(SceneJoints, FramesGoWithTheirBodies) {
-  const Simulation sim =
-      run(rail(R"(, "armature": 1)", R"(, "drives": [{"joint": "rail", "type": "velocity", "damping": 1e5, "target": 0.5}],
+  const Simulation sim = run(
+      rail(R"(, "armature": 1)", R"(, "drives": [{"joint": "rail", "type": "velocity", "damping": 1e5, "target": 0.5}],
     "frames": [{"name": "tool", "body": "carriage", "position": [0, 0, 0.2]}])"));
   EXPECT_NEAR(measured(sim, "tool.p_x"), 0.5 + measured(sim, "rail.position"), 1e-12);
   EXPECT_NEAR(measured(sim, "tool.p_z"), 0.2, 1e-12);
@@ -79,7 +83,8 @@ TEST(SceneJoints, MistakesAreNamed) {
   says(rail("", R"(, "drives": [{"joint": "rails", "type": "motor"}])"), "Did you mean \"rail\"?");
   says(rail("", R"(, "drives": [{"type": "motor"}])"), "needs either \"joint\" or \"tendon\"");
   says(rail("", R"(, "drives": [{"joint": "rail", "type": "position"}])"), "needs \"stiffness\"");
-  says(rail("", R"(, "drives": [{"joint": "rail", "type": "motor", "stiffness": 3}])"), "goes with drives to a position");
+  says(rail("", R"(, "drives": [{"joint": "rail", "type": "motor", "stiffness": 3}])"),
+       "goes with drives to a position");
   says(rail("", R"(, "drives": [{"joint": "rail", "type": "motor", "force": [3, -3]}])"), "is no range");
   says(rail("", R"(, "couplings": [{"joint": "rail", "follows": "rail"}])"), "is the joint itself");
   says(rail("", R"(, "tendons": [{"name": "t", "joints": {}}])"), "must say by how much each joint counts");

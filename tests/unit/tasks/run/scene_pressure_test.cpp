@@ -15,8 +15,8 @@ std::string sceneOfPad(const std::string& finger, const std::string& record) {
 }
 
 TEST(ScenePressure, IsRecordedAsOneColumnPerTaxel) {
-  const Scene scene =
-      parseScene(sceneOfPad(R"(, "taxels": {"rows": 4, "columns": 3})", R"("index.normal_force", "index.pressure")"), "pad.json");
+  const Scene scene = parseScene(
+      sceneOfPad(R"(, "taxels": {"rows": 4, "columns": 3})", R"("index.normal_force", "index.pressure")"), "pad.json");
   ASSERT_EQ(scene.record.quantities.size(), 13u);
   EXPECT_EQ(scene.record.quantities[1].name, "index.pressure_0_0");
   EXPECT_EQ(scene.record.quantities[12].name, "index.pressure_3_2");
@@ -36,8 +36,8 @@ TEST(ScenePressure, RefusesWhatIsNoTaxel) {
   };
   const std::string taxels = R"(, "taxels": {"rows": 4, "columns": 3})";
   EXPECT_NE(message("", R"("index.pressure")").find("needs the finger's key \"taxels\""), std::string::npos);
-  for (const char* name :
-       {"index.pressure_4_0", "index.pressure_0_3", "index.pressure_1", "index.pressure_-1_0", "index.pressure_1_1x", "index.pressure_"}) {
+  for (const char* name : {"index.pressure_4_0", "index.pressure_0_3", "index.pressure_1", "index.pressure_-1_0",
+                           "index.pressure_1_1x", "index.pressure_"}) {
     EXPECT_NE(message(taxels, '"' + std::string(name) + '"').find("4 rows and 3 columns"), std::string::npos) << name;
   }
   EXPECT_NE(message(R"(, "taxels": {"rows": 1, "columns": 3})", "").find("rows"), std::string::npos);

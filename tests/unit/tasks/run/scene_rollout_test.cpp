@@ -88,8 +88,8 @@ TEST(SceneStepper, TakesADeviceEvenlyToItsPlace) {
   EXPECT_EQ(state.grasp.world.points[0].v_target_W, Vec3::Zero());
 }
 
-RolloutJob jobOf(const std::shared_ptr<const SceneModel>& model, std::vector<SceneState>& states, std::vector<double>& rows,
-                 std::int64_t chunk) {
+RolloutJob jobOf(const std::shared_ptr<const SceneModel>& model, std::vector<SceneState>& states,
+                 std::vector<double>& rows, std::int64_t chunk) {
   RolloutJob job;
   job.models = {model};
   for (SceneState& state : states) job.states.push_back(&state);
@@ -104,7 +104,8 @@ TEST(Rollout, IsTheSameForAnyThreadsAndChunks) {
   const auto model = std::make_shared<const SceneModel>(readBuiltinScene("pickup"));
   const auto rows = [&](int threads, std::int64_t chunk) {
     std::vector<SceneState> states(9, SceneState(*model));
-    for (std::size_t i = 0; i < states.size(); ++i) states[i].held[0] = Vec3(-0.03, 0, 0.03 + 1e-3 * static_cast<double>(i));
+    for (std::size_t i = 0; i < states.size(); ++i)
+      states[i].held[0] = Vec3(-0.03, 0, 0.03 + 1e-3 * static_cast<double>(i));
     std::vector<double> out;
     RolloutPool pool(threads);
     EXPECT_TRUE(pool.run(jobOf(model, states, out, chunk), never));

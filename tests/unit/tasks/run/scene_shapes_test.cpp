@@ -1,4 +1,5 @@
-// Bodies of several shapes in scene files: what they weigh, what they are called, and one line of complaint for each thing that can be wrong.
+// Bodies of several shapes in scene files: what they weigh, what they are called, and one line of
+// complaint for each thing that can be wrong.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,12 +20,12 @@ std::string sceneOfParts(const std::string& body, const std::string& parts) {
 }
 
 TEST(SceneShapes, HaveTheirPosesMaterialsAndShares) {
-  const Scene scene =
-      parseScene(sceneOfParts(R"("mass": 0.3, "material": {"mu_s": 0.7}, )",
-                              "{" + kBallPart + R"(, "name": "left", "position": [-0.02, 0, 0], "mass": 0.2}, {)" + kBallPart +
-                                  R"(, "position": [0.02, 0, 0], "rotation": [0, 0, 1],
+  const Scene scene = parseScene(
+      sceneOfParts(R"("mass": 0.3, "material": {"mu_s": 0.7}, )",
+                   "{" + kBallPart + R"(, "name": "left", "position": [-0.02, 0, 0], "mass": 0.2}, {)" + kBallPart +
+                       R"(, "position": [0.02, 0, 0], "rotation": [0, 0, 1],
                                                                      "material": {"mu_s": 0.2}, "collides": {"as": 2, "with": 4}})"),
-                 "s.json");
+      "s.json");
   const std::vector<engine::ColliderSpec>& shapes = scene.bodies.at(0).shapes;
   ASSERT_EQ(shapes.size(), 2u);
   EXPECT_EQ(shapes[0].name, "left");
@@ -44,13 +45,16 @@ TEST(SceneShapes, WeighByDensityOrByTheirOwnMasses) {
     return buildWorld(parseScene(sceneOfParts(body, parts), "s.json")).world.bodies[0].mass;
   };
   EXPECT_NEAR(massOf(R"("density": 1000, )", "{" + kBallPart + "}, {" + kBallPart + "}"), 2000 * ball, 1e-15);
-  EXPECT_NEAR(massOf(R"("density": 1000, )", "{" + kBallPart + R"(, "mass": 0.5}, {)" + kBallPart + "}"), 0.5 + 1000 * ball, 1e-15);
-  EXPECT_NEAR(massOf("", "{" + kBallPart + R"(, "mass": 0.5}, {)" + kBallPart + R"(, "density": 1000})"), 0.5 + 1000 * ball, 1e-15);
+  EXPECT_NEAR(massOf(R"("density": 1000, )", "{" + kBallPart + R"(, "mass": 0.5}, {)" + kBallPart + "}"),
+              0.5 + 1000 * ball, 1e-15);
+  EXPECT_NEAR(massOf("", "{" + kBallPart + R"(, "mass": 0.5}, {)" + kBallPart + R"(, "density": 1000})"),
+              0.5 + 1000 * ball, 1e-15);
 }
 
 TEST(SceneShapes, AnInertiaIsTakenAsGiven) {
-  const std::string body = R"({"version": 1, "duration": 1, "bodies": [{"mass": 0.1, )" + kBallPart +
-                           R"(, "inertia": {"center": [0, 0, 0.005], "moments": [1e-5, 2e-5, 2.5e-5], "products": [1e-6, 0, 0]}}]})";
+  const std::string body =
+      R"({"version": 1, "duration": 1, "bodies": [{"mass": 0.1, )" + kBallPart +
+      R"(, "inertia": {"center": [0, 0, 0.005], "moments": [1e-5, 2e-5, 2.5e-5], "products": [1e-6, 0, 0]}}]})";
   const engine::BodyModel model = buildWorld(parseScene(body, "s.json")).world.bodies[0];
   const Mat3 R = model.X_BI.q.toRotationMatrix(), I = R * model.moments.asDiagonal() * R.transpose();
   EXPECT_NEAR(I(0, 1), 1e-6, 1e-18);
@@ -63,10 +67,11 @@ TEST(SceneShapes, PiecesOfAFileAreItsPartsThatHangTogether) {
   const tests::TemporaryDirectory folder;
   std::ofstream out(folder / "pieces.obj");
   for (int piece = 0; piece < 2; ++piece) {
-    for (int k = 0; k < 8; ++k) out << "v " << (k & 1 ? 10 : 0) + 20 * piece << ' ' << (k & 2 ? 10 : 0) << ' ' << (k & 4 ? 10 : 0) << '\n';
+    for (int k = 0; k < 8; ++k)
+      out << "v " << (k & 1 ? 10 : 0) + 20 * piece << ' ' << (k & 2 ? 10 : 0) << ' ' << (k & 4 ? 10 : 0) << '\n';
     const int n = 8 * piece;
-    for (const auto& f : {std::array{1, 3, 4, 2}, std::array{5, 6, 8, 7}, std::array{1, 2, 6, 5}, std::array{3, 7, 8, 4},
-                          std::array{1, 5, 7, 3}, std::array{2, 4, 8, 6}})
+    for (const auto& f : {std::array{1, 3, 4, 2}, std::array{5, 6, 8, 7}, std::array{1, 2, 6, 5},
+                          std::array{3, 7, 8, 4}, std::array{1, 5, 7, 3}, std::array{2, 4, 8, 6}})
       out << "f " << f[0] + n << ' ' << f[1] + n << ' ' << f[2] + n << ' ' << f[3] + n << '\n';
   }
   out.close();
@@ -92,16 +97,18 @@ TEST(SceneShapes, SayWhatIsWrongWithThem) {
   };
   const std::string mass = R"("mass": 1, )", ball = "{" + kBallPart + "}";
   EXPECT_EQ(complaint(mass, ""), "s.json:1: bodies[0].shapes is empty. Give the body one shape or more.");
-  EXPECT_EQ(complaint(mass + kBallPart + ", ", ball), "s.json:1: bodies[0].shape doesn't go with \"shapes\". Keep one of the two.");
-  EXPECT_EQ(complaint("", ball), "s.json:1: bodies[0] lacks the key \"mass\" [kg] (or \"density\" [kg/m^3], or \"static\": true).");
+  EXPECT_EQ(complaint(mass + kBallPart + ", ", ball),
+            "s.json:1: bodies[0].shape doesn't go with \"shapes\". Keep one of the two.");
+  EXPECT_EQ(complaint("", ball),
+            "s.json:1: bodies[0] lacks the key \"mass\" [kg] (or \"density\" [kg/m^3], or \"static\": true).");
   EXPECT_EQ(complaint(mass, "{" + kBallPart + R"(, "name": "a"}, {)" + kBallPart + R"(, "name": "a"})"),
             "s.json:1: bodies[0].shapes[1].name = \"a\" is the second shape of this body called \"a\".");
   EXPECT_EQ(complaint(R"("static": true, )", "{" + kBallPart + R"(, "mass": 1})"),
             "s.json:1: bodies[0].shapes[0].mass = 1 doesn't go with a body that never moves. Remove the key.");
-  EXPECT_EQ(
-      complaint(mass, "{" + kBallPart + R"(, "mass": 2})"),
-      "s.json:1: body \"thing\": its shapes' masses come to 2 kg, its own is 1. Leave one of them out, or let what is left be positive for "
-      "shapes without a mass.");
+  EXPECT_EQ(complaint(mass, "{" + kBallPart + R"(, "mass": 2})"),
+            "s.json:1: body \"thing\": its shapes' masses come to 2 kg, its own is 1. Leave one of them out, or let "
+            "what is left be positive for "
+            "shapes without a mass.");
   EXPECT_EQ(complaint(mass + R"("inertia": {"moments": [1, 1, 3]}, )", ball).substr(0, 50),
             "s.json:1: body \"thing\": principal moments of inert");
 }

@@ -40,7 +40,8 @@ TEST(Quantities, MeasureAFallingSpinningBall) {
   EXPECT_NEAR(measure(sim, bodyQuantities(), "w_z"), 2, 1e-13);
   EXPECT_NEAR(measure(sim, bodyQuantities(), "rotation"), 2 * t, 1e-13);
   EXPECT_NEAR(measure(sim, bodyQuantities(), "L_z"), 2 * 0.4 * 0.1 * 4e-4, 1e-18);
-  EXPECT_NEAR(measure(sim, worldQuantities(), "kinetic_energy"), 0.05 * (0.25 + g * g * t * t) + 0.5 * 4 * 0.4 * 0.1 * 4e-4, 1e-13);
+  EXPECT_NEAR(measure(sim, worldQuantities(), "kinetic_energy"),
+              0.05 * (0.25 + g * g * t * t) + 0.5 * 4 * 0.4 * 0.1 * 4e-4, 1e-13);
   EXPECT_NEAR(measure(sim, worldQuantities(), "energy"), 0.05 * 0.25 + 0.5 * 4 * 1.6e-5 + 0.1 * g, 1e-13);  // conserved
   EXPECT_EQ(measure(sim, fingerQuantities(), "p_x"), 1);
   EXPECT_EQ(measure(sim, fingerQuantities(), "touching"), 0);
@@ -102,7 +103,8 @@ TEST(Simulation, MovesFingersAlongTheirTrajectories) {
                                  "s.json");
   Simulation sim(scene);
   for (int i = 0; i < 500; ++i) sim.tick();
-  EXPECT_NEAR(sim.state().world.points[0].p_W.y(), 0.05, 1e-15);  // locked axes are where the device is at the tick's end
+  // locked axes are where the device is at the tick's end
+  EXPECT_NEAR(sim.state().world.points[0].p_W.y(), 0.05, 1e-15);
 }
 
 TEST(Simulation, TicksWithoutAllocatingAndTwiceToTheSameBits) {

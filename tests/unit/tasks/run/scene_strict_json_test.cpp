@@ -24,8 +24,9 @@ std::string parseMessage(const std::string& json) {
 }
 
 TEST(StrictJson, KnowsTheLineAndPathOfEveryValue) {
-  const JsonValue root =
-      parseJson("// a comment\n{\n  \"bodies\": [\n    {\"mass\": 1,\n     \"radius\":\n       2.5\n    },\n    7\n  ]\n}\n", "f.json");
+  const JsonValue root = parseJson(
+      "// a comment\n{\n  \"bodies\": [\n    {\"mass\": 1,\n     \"radius\":\n       2.5\n    },\n    7\n  ]\n}\n",
+      "f.json");
   const JsonValue& bodies = root.at("bodies");
   EXPECT_EQ(bodies.line(), 3);
   EXPECT_EQ(bodies.array()[0].line(), 4);
@@ -34,7 +35,8 @@ TEST(StrictJson, KnowsTheLineAndPathOfEveryValue) {
   EXPECT_EQ(radius.line(), 6);
   EXPECT_EQ(radius.path(), "bodies[0].radius");
   EXPECT_EQ(radius.number(), 2.5);
-  EXPECT_EQ(bodies.array()[1].line(), 8);  // a number is followed by a line break: its end is seen only on the next line
+  // a number is followed by a line break: its end is seen only on the next line
+  EXPECT_EQ(bodies.array()[1].line(), 8);
   EXPECT_EQ(bodies.array()[1].path(), "bodies[1]");
 }
 
@@ -63,22 +65,29 @@ TEST(StrictJson, NamesAnUnknownKeyAndWhatWasProbablyMeant) {
   const JsonValue root = parseJson("{\"mass\": 1,\n\"radios\": 2}", "f.json");
   EXPECT_EQ(messageOf([&] { root.allowOnly(kKeys); }), "f.json:2: radios isn't a known key. Did you mean \"radius\"?");
   const JsonValue other = parseJson("{\"colour\": 1}", "f.json");
-  EXPECT_EQ(messageOf([&] { other.allowOnly(kKeys); }), "f.json:1: colour isn't a known key. Known here: mass, radius, mu_s.");
+  EXPECT_EQ(messageOf([&] { other.allowOnly(kKeys); }),
+            "f.json:1: colour isn't a known key. Known here: mass, radius, mu_s.");
   EXPECT_EQ(messageOf([&] { parseJson("{\"mass\": 1}", "f").allowOnly(kKeys); }), "");
 }
 
 TEST(StrictJson, NamesDuplicateKeysWrongTypesAndMissingKeys) {
-  EXPECT_EQ(parseMessage("{\"a\": 1,\n\"b\": 2,\n\"a\": 3}"), "f.json:3: the key \"a\" is there twice. Remove one of them.");
+  EXPECT_EQ(parseMessage("{\"a\": 1,\n\"b\": 2,\n\"a\": 3}"),
+            "f.json:3: the key \"a\" is there twice. Remove one of them.");
   const JsonValue root = parseJson("{\"a\": \"x\", \"b\": [1, 2], \"c\": 1.5}", "f.json");
-  EXPECT_EQ(messageOf([&] { root.at("a").number(); }), "f.json:1: a = \"x\" has the wrong type: a number is needed here.");
-  EXPECT_EQ(messageOf([&] { root.at("c").boolean(); }), "f.json:1: c = 1.5 has the wrong type: true or false is needed here.");
-  EXPECT_EQ(messageOf([&] { root.at("b").vector(); }), "f.json:1: b has 2 elements, but a vector has three: [x, y, z].");
+  EXPECT_EQ(messageOf([&] { root.at("a").number(); }),
+            "f.json:1: a = \"x\" has the wrong type: a number is needed here.");
+  EXPECT_EQ(messageOf([&] { root.at("c").boolean(); }),
+            "f.json:1: c = 1.5 has the wrong type: true or false is needed here.");
+  EXPECT_EQ(messageOf([&] { root.at("b").vector(); }),
+            "f.json:1: b has 2 elements, but a vector has three: [x, y, z].");
   EXPECT_EQ(messageOf([&] { root.at("c").integer(0, 9, "Whole."); }), "f.json:1: c = 1.5 isn't a whole number. Whole.");
-  EXPECT_EQ(messageOf([&] { root.at("d", "It is needed."); }), "f.json:1: the whole file lacks the key \"d\". It is needed.");
+  EXPECT_EQ(messageOf([&] { root.at("d", "It is needed."); }),
+            "f.json:1: the whole file lacks the key \"d\". It is needed.");
 }
 
 TEST(StrictJson, TakesNoNumberThatIsNotFinite) {
-  for (const char* text : {"[NaN]", "[Infinity]", "[-inf]", "[1e999]", "[-1e999]"}) EXPECT_NE(parseMessage(text), "") << text;
+  for (const char* text : {"[NaN]", "[Infinity]", "[-inf]", "[1e999]", "[-1e999]"})
+    EXPECT_NE(parseMessage(text), "") << text;
 }
 
 TEST(StrictJson, NamesTheLineWhereTheSyntaxBreaks) {
@@ -88,7 +97,9 @@ TEST(StrictJson, NamesTheLineWhereTheSyntaxBreaks) {
   }
 }
 
-TEST(StrictJson, RefusesEndlessNesting) { EXPECT_NE(parseMessage(std::string(100000, '[')).find("nested"), std::string::npos); }
+TEST(StrictJson, RefusesEndlessNesting) {
+  EXPECT_NE(parseMessage(std::string(100000, '[')).find("nested"), std::string::npos);
+}
 
 // Every prefix of a good file, and the file with any one byte replaced, either parses or throws InputError.
 RC_GTEST_PROP(StrictJson, SurvivesDamage, ()) {

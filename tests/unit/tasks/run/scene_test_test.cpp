@@ -35,8 +35,8 @@ std::string pathWith(const TemporaryDirectory& dir, const char* name, const std:
 
 TEST(HashExpectation, IsFilledInHoldsAndTellsOfAChange) {
   const TemporaryDirectory dir;
-  const std::string file =
-      pathWith(dir, "s.json", ballScene("\n    {\"hash\": \"\", \"time\": \"end\"},\n    {\"hash\": \"\", \"time\": 0.05}"));
+  const std::string file = pathWith(
+      dir, "s.json", ballScene("\n    {\"hash\": \"\", \"time\": \"end\"},\n    {\"hash\": \"\", \"time\": 0.05}"));
   EXPECT_EQ(runPincer({"test", file}).exit_code, kExitCheckFailed);
   EXPECT_EQ(runPincer({"test", file, "--update-hashes"}).exit_code, kExitOk);
   const std::string pinned = readFile(file);
@@ -51,7 +51,8 @@ TEST(HashExpectation, IsFilledInHoldsAndTellsOfAChange) {
   EXPECT_NE(scene.expectations[0].hash, scene.expectations[1].hash);
   std::string other = pinned;
   other.replace(other.find("\"mass\": 1"), 9, "\"mass\": 1, \"velocity\": [1e-9, 0, 0]");
-  EXPECT_EQ(runPincer({"test", pathWith(dir, "o.json", other)}).exit_code, kExitCheckFailed) << "it drifts by a nanometre a second";
+  EXPECT_EQ(runPincer({"test", pathWith(dir, "o.json", other)}).exit_code, kExitCheckFailed)
+      << "it drifts by a nanometre a second";
   EXPECT_EQ(runPincer({"sim", dir / "o.json"}).exit_code, kExitCheckFailed);
 }
 
@@ -66,14 +67,19 @@ TEST(HashExpectation, SaysWhatIsWrong) {
 TEST(TestCommand, NamesQuantityTimeWantedAndMeasured) {
   const TemporaryDirectory dir;
   pathWith(dir, "good.json", ballScene(R"({"quantity": "ball.p_x", "time": "end", "value": 0, "tolerance": 0})"));
-  pathWith(dir, "bad.json", ballScene(R"({"quantity": "ball.p_z", "time": 0.1, "value": 0, "tolerance": 1e-3, "because": "it <floats>"})"));
+  pathWith(
+      dir, "bad.json",
+      ballScene(R"({"quantity": "ball.p_z", "time": 0.1, "value": 0, "tolerance": 1e-3, "because": "it <floats>"})"));
   pathWith(dir, "no-scene.json", "{\"participants\": 3}");
   const auto done = runPincer({"test", dir / ".", "--junit", dir / "r.xml", "--out", dir / "failed", "--jobs", "2"});
   EXPECT_EQ(done.exit_code, kExitCheckFailed) << done.error;
-  EXPECT_TRUE(contains(done.out, "ball.p_z at 0.1 s == 0 +- 0.001 m: measured -0.04905, off by 0.049, because it <floats>")) << done.out;
+  EXPECT_TRUE(
+      contains(done.out, "ball.p_z at 0.1 s == 0 +- 0.001 m: measured -0.04905, off by 0.049, because it <floats>"))
+      << done.out;
   EXPECT_TRUE(contains(done.out, "1 of 2 scenes as expected")) << done.out;
   const std::string junit = readFile(dir / "r.xml");
-  EXPECT_TRUE(contains(junit, "<testsuite name=\"pincer\" tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"0\"")) << junit;
+  EXPECT_TRUE(contains(junit, "<testsuite name=\"pincer\" tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"0\""))
+      << junit;
   EXPECT_TRUE(contains(junit, "because it &lt;floats&gt;")) << junit;
   const auto again = runPincer({"test", "--replay", dir / "failed/bad.log.json"});
   EXPECT_EQ(again.exit_code, kExitOk) << again.error;

@@ -12,7 +12,8 @@ namespace {
 
 TimedPoint at(double time, const Vec3& p_W) { return {time, p_W, Vec3::Zero()}; }
 
-// Central difference; its error is d^3/6 p''' with p''' of the order 60 h/T^3 = 60 m/s^3 here, so 1e-7, plus round-off of 1e-16/1e-4.
+// Central difference; its error is d^3/6 p''' with p''' of the order 60 h/T^3 = 60 m/s^3
+// here, so 1e-7, plus round-off of 1e-16/1e-4.
 Vec3 slopeAt(const Trajectory& trajectory, double time) {
   constexpr double d = 1e-4;
   return (trajectory.at(time + d).p_W - trajectory.at(time - d).p_W) / (2 * d);
@@ -27,7 +28,8 @@ TEST(MinimumJerk, HasTheKnownValuesOfItsPolynomial) {
 }
 
 TEST(MinimumJerk, RestsBeforeBetweenAndAfter) {
-  const Trajectory reach = Trajectory::throughKeyframes({at(0.5, Vec3::UnitX()), at(1, Vec3::UnitY()), at(2, Vec3::UnitZ())});
+  const Trajectory reach =
+      Trajectory::throughKeyframes({at(0.5, Vec3::UnitX()), at(1, Vec3::UnitY()), at(2, Vec3::UnitZ())});
   EXPECT_EQ(reach.at(0).p_W, Vec3(Vec3::UnitX()));
   EXPECT_EQ(reach.at(-5).v_W, Vec3(Vec3::Zero()));
   EXPECT_EQ(reach.at(1).p_W, Vec3(Vec3::UnitY()));
@@ -39,7 +41,8 @@ TEST(MinimumJerk, RestsBeforeBetweenAndAfter) {
 }
 
 RC_GTEST_PROP(MinimumJerk, VelocityIsTheDerivative, ()) {
-  const Trajectory reach = Trajectory::throughKeyframes({at(0, Vec3::Zero()), at(1, Vec3(1, 2, 3)), at(2, Vec3(0, 1, -1))});
+  const Trajectory reach =
+      Trajectory::throughKeyframes({at(0, Vec3::Zero()), at(1, Vec3(1, 2, 3)), at(2, Vec3(0, 1, -1))});
   const double t = *rc::gen::inRange(1, 2000) / 1000.0;
   RC_ASSERT((reach.at(t).v_W - slopeAt(reach, t)).norm() < 1e-5);
 }
@@ -47,13 +50,15 @@ RC_GTEST_PROP(MinimumJerk, VelocityIsTheDerivative, ()) {
 // A parabola sampled unevenly: slopes through three points are exact inside, so the cubic reproduces it there.
 TEST(RecordedMotion, ReproducesAParabola) {
   const auto parabola = [](double t) { return at(t, Vec3(t * t, 1 - 2 * t, 3 * t - t * t)); };
-  const Trajectory motion = Trajectory::throughSamples({parabola(0), parabola(0.3), parabola(0.5), parabola(1.1), parabola(1.2)});
+  const Trajectory motion =
+      Trajectory::throughSamples({parabola(0), parabola(0.3), parabola(0.5), parabola(1.1), parabola(1.2)});
   for (double t = 0.3; t <= 1.1; t += 0.01) EXPECT_NEAR((motion.at(t).p_W - parabola(t).p_W).norm(), 0, 1e-15) << t;
 }
 
 RC_GTEST_PROP(RecordedMotion, IsSmoothAndPassesThroughItsSamples, ()) {
   std::vector<TimedPoint> samples;
-  for (int i = 0; i < 6; ++i) samples.push_back(at(0.1 * i, 1e-3 * Vec3(*rc::gen::inRange(-50, 50), *rc::gen::inRange(-50, 50), 0)));
+  for (int i = 0; i < 6; ++i)
+    samples.push_back(at(0.1 * i, 1e-3 * Vec3(*rc::gen::inRange(-50, 50), *rc::gen::inRange(-50, 50), 0)));
   const Trajectory motion = Trajectory::throughSamples(samples);
   constexpr double d = 1e-9;
   for (int i = 1; i < 5; ++i) {
@@ -92,9 +97,12 @@ TEST_F(TrajectoryCsv, NamesWhatIsWrong) {
   EXPECT_EQ(messageFor("time,x,y,z\n"), ":1: there is no row below the header.");
   EXPECT_EQ(messageFor("time,x,y,z\n0,0,0\n"), ":2: has 3 columns, but four are needed: time,x,y,z.");
   EXPECT_EQ(messageFor("time,x,y,z\n0,0,0,0,0\n"), ":2: has 5 columns, but four are needed: time,x,y,z.");
-  EXPECT_EQ(messageFor("time,x,y,z\n0,0,0,0\n1,a,0,0\n"), ":3: \"a\" isn't a finite number. Each row is time,x,y,z in seconds and metres.");
-  EXPECT_EQ(messageFor("time,x,y,z\n0,nan,0,0\n"), ":2: \"nan\" isn't a finite number. Each row is time,x,y,z in seconds and metres.");
-  EXPECT_EQ(messageFor("time,x,y,z\n1,0,0,0\n1,0,0,0\n"), ":3: time 1 doesn't follow 1. Times must increase from one point to the next.");
+  EXPECT_EQ(messageFor("time,x,y,z\n0,0,0,0\n1,a,0,0\n"),
+            ":3: \"a\" isn't a finite number. Each row is time,x,y,z in seconds and metres.");
+  EXPECT_EQ(messageFor("time,x,y,z\n0,nan,0,0\n"),
+            ":2: \"nan\" isn't a finite number. Each row is time,x,y,z in seconds and metres.");
+  EXPECT_EQ(messageFor("time,x,y,z\n1,0,0,0\n1,0,0,0\n"),
+            ":3: time 1 doesn't follow 1. Times must increase from one point to the next.");
 }
 
 }  // namespace

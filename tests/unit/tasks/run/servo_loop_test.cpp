@@ -56,7 +56,8 @@ TEST(ServoVirtual, TicksOneAfterTheOtherAtTheRate) {
   Cycle cycle([n = 0](double) mutable { return ++n < 1000; });
   const ServoReport report = runServo(options, cycle, kNeverStop);
   ASSERT_EQ(cycle.times.size(), 1000u);
-  for (std::size_t k = 0; k < cycle.times.size(); ++k) ASSERT_EQ(cycle.times[k], static_cast<double>(k) / 500);  // no drift: not summed
+  // no drift: not summed
+  for (std::size_t k = 0; k < cycle.times.size(); ++k) ASSERT_EQ(cycle.times[k], static_cast<double>(k) / 500);
   EXPECT_EQ(report.ticks, 1000);
   EXPECT_EQ(report.missed, 0);
   EXPECT_EQ(report.duration.count(), 1000);
@@ -165,7 +166,8 @@ TEST(ServoPaced, LosesNoTickToAStallAndWatchesNobody) {
   });
   const ServoReport report = runServo(options, cycle, kNeverStop);
   ASSERT_EQ(cycle.times.size(), 40u);
-  for (std::size_t k = 0; k < cycle.times.size(); ++k) ASSERT_EQ(cycle.times[k], static_cast<double>(k) / 1000);  // to the bit
+  // to the bit
+  for (std::size_t k = 0; k < cycle.times.size(); ++k) ASSERT_EQ(cycle.times[k], static_cast<double>(k) / 1000);
   EXPECT_EQ(cycle.cuts, 0);
   EXPECT_FALSE(report.watchdog_tripped);
   EXPECT_GE(report.missed, 4 * 29);

@@ -1,4 +1,5 @@
-// A pickup study into a session file under the servo: which ticks are kept, what an interrupt leaves, and what a person is told.
+// A pickup study into a session file under the servo: which ticks are kept, what an
+// interrupt leaves, and what a person is told.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -97,7 +98,8 @@ TEST(PickupSession, KeepsFinishedTrialsWhenInterrupted) {
   const tests::TemporaryDirectory directory;
   std::atomic<bool> interrupted{false};
   const auto after_two = [&](const TrialProgress& progress) { interrupted = progress.done == 2; };
-  const ManipulationSessionResult result = runManipulationSession(shortStudy(4), directory / "s.db", interrupted, after_two);
+  const ManipulationSessionResult result =
+      runManipulationSession(shortStudy(4), directory / "s.db", interrupted, after_two);
   EXPECT_TRUE(result.interrupted);
   EXPECT_EQ(result.trials, 2u);
   const SessionReader session(directory / "s.db");

@@ -1,4 +1,5 @@
-// What the servo steps may be solved on several threads. The name puts it among the tests that run under the thread sanitizer (tests/run).
+// What the servo steps may be solved on several threads. The name puts it among the tests that
+// run under the thread sanitizer (tests/run).
 #include <gtest/gtest.h>
 
 #include "pincer/engine/world/scratch.h"
@@ -16,7 +17,8 @@ Scene sixIslands(int threads) {
     engine::BodySpec ball{"ball" + std::to_string(i), contact::Sphere{0.02}, true, 0.1, {}};
     ball.material.mu_s = ball.material.mu_d = 0.1 * (1 + i);
     scene.bodies.push_back(ball);
-    scene.starts.push_back({{Quat::Identity(), {0.1 * i, 0, 0.02 + 0.001 * i}}, {i == 0 ? 1.5 : 0, 0.1 * i, 0}, {10, 0, 0}});
+    scene.starts.push_back(
+        {{Quat::Identity(), {0.1 * i, 0, 0.02 + 0.001 * i}}, {i == 0 ? 1.5 : 0, 0.1 * i, 0}, {10, 0, 0}});
   }
   scene.options.threads = threads;
   return scene;

@@ -27,14 +27,16 @@ Vec3 aboutVertical(double psi, const Vec3& v) {
   return {math::cos(psi) * v.x() - math::sin(psi) * v.y(), math::sin(psi) * v.x() + math::cos(psi) * v.y(), v.z()};
 }
 
-// Handles that touch at `count` places within 60 mm, in any direction from each other; each middle off by `noise` in any direction.
+// Handles that touch at `count` places within 60 mm, in any direction from each other;
+// each middle off by `noise` in any direction.
 std::vector<HandleTouch> touchesOf(const Truth& truth, std::size_t count, double noise, std::mt19937_64& random) {
   std::uniform_real_distribution<double> within(-1, 1);
   std::normal_distribution<double> normal;
   const auto any = [&] { return Vec3{within(random), within(random), within(random)}; };  // braces: from left to right
   std::vector<HandleTouch> touches;
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 a_W = 0.06 * any(), b_W = a_W - truth.distance * Vec3{normal(random), normal(random), normal(random)}.normalized();
+    const Vec3 a_W = 0.06 * any(),
+               b_W = a_W - truth.distance * Vec3{normal(random), normal(random), normal(random)}.normalized();
     const Vec3 told_W = truth.reset_W + aboutVertical(-truth.base.turn, b_W - truth.reset_W - truth.base.offset_W);
     touches.push_back({a_W + noise * any(), told_W + noise * any()});
   }
@@ -61,7 +63,8 @@ TEST(TouchCalibration, FindsTheBaseExactlyFromExactPlaces) {
   }
 }
 
-// Half a millimetre and a fifth of a degree, from handles held together to a tenth of a millimetre: nearly always, and what it isn't sure of it says.
+// Half a millimetre and a fifth of a degree, from handles held together to a tenth of a millimetre: nearly
+// always, and what it isn't sure of it says.
 TEST(TouchCalibration, FindsTheBaseFromPlacesThatAreALittleOff) {
   std::mt19937_64 random(2);
   int good = 0, sure = 0;
@@ -94,7 +97,8 @@ TEST(TouchCalibration, SaysWhatThePlacesDoNotTell) {
     const Vec3 a_W(0.05 * std::sin(i), 0.05 * std::cos(2 * i), 0.01 * i);
     alike.push_back({a_W, a_W - Vec3(truth.distance, 0, 0)});
   }
-  EXPECT_TRUE(tests::contains(touchOddity(findBase(alike, truth.reset_W)), "turn the pair")) << touchOddity(findBase(alike, truth.reset_W));
+  EXPECT_TRUE(tests::contains(touchOddity(findBase(alike, truth.reset_W)), "turn the pair"))
+      << touchOddity(findBase(alike, truth.reset_W));
   touches.resize(kFewestTouches - 1);
   EXPECT_TRUE(tests::contains(tests::errorOf([&] { findBase(touches, truth.reset_W); }), "too few"));
 }

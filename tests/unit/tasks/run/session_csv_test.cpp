@@ -24,7 +24,9 @@ namespace {
 
 using tests::readFile;
 
-std::ptrdiff_t filesIn(const tests::TemporaryDirectory& dir) { return std::distance(std::filesystem::directory_iterator(dir.path()), {}); }
+std::ptrdiff_t filesIn(const tests::TemporaryDirectory& dir) {
+  return std::distance(std::filesystem::directory_iterator(dir.path()), {});
+}
 using tests::TemporaryDirectory;
 
 std::vector<std::vector<std::string>> parse(const std::string& csv) {
@@ -72,9 +74,17 @@ RC_GTEST_PROP(CsvTable, KeepsAnyText, (const std::string& a, const std::string& 
   RC_ASSERT(unguarded(rows[0][1]) == b);
 }
 
-constexpr const char* kHostile[] = {
-    "=HYPERLINK(\"http://x\")", "+cmd|' /C calc'!A0", "-2+3", "@SUM(A1)", "\tx", "\rx", "'quoted", "a\tb\nc\\d\re", "\"\"", "''",
-    "$(id)`id`%s{}_^@é"};
+constexpr const char* kHostile[] = {"=HYPERLINK(\"http://x\")",
+                                    "+cmd|' /C calc'!A0",
+                                    "-2+3",
+                                    "@SUM(A1)",
+                                    "\tx",
+                                    "\rx",
+                                    "'quoted",
+                                    "a\tb\nc\\d\re",
+                                    "\"\"",
+                                    "''",
+                                    "$(id)`id`%s{}_^@é"};
 
 TEST(CsvTable, TextsThatLookLikeFormulasAreNotRunAndNumbersStayNumbers) {
   for (const char* text : {"=1+1", "+x", "-x", "@x", "\tx", "\rx", "'x", "-", "1e5x" /* harmless */}) {
@@ -102,8 +112,9 @@ TEST(CsvTable, PythonReadsBackWhatWasWritten) {
   CsvTable table;
   for (const char* text : kHostile) table.row(text, 0.1);
   writeAtomically(dir / "a.csv", table.text());
-  std::ofstream(dir / "a.py") << "import csv,sys\nfor row in csv.reader(open(sys.argv[1], newline='', encoding='utf8'), strict=True):\n"
-                                 "  sys.stdout.write(row[0].encode('utf8').hex() + ' ' + row[1] + '\\n')\n";
+  std::ofstream(dir / "a.py")
+      << "import csv,sys\nfor row in csv.reader(open(sys.argv[1], newline='', encoding='utf8'), strict=True):\n"
+         "  sys.stdout.write(row[0].encode('utf8').hex() + ' ' + row[1] + '\\n')\n";
   const std::string command = "python3 '" + dir / "a.py" + "' '" + (dir / "a.csv") + "' > '" + (dir / "a.out") + "'";
   ASSERT_EQ(std::system(command.c_str()), 0);
   std::string expected;
@@ -129,7 +140,8 @@ TEST(BidsExport, TabsLineEndsAndFormulasInNamesKeepTheirColumn) {
   }
   writer.close();
   exportBids(SessionReader(dir / "a.db"), dir / "bids");
-  EXPECT_NE(readFile(dir / "bids/dataset_description.json").find(R"("quo\"te \\ \u000a task, seed 1")"), std::string::npos)
+  EXPECT_NE(readFile(dir / "bids/dataset_description.json").find(R"("quo\"te \\ \u000a task, seed 1")"),
+            std::string::npos)
       << readFile(dir / "bids/dataset_description.json");
   std::istringstream table(readFile(dir / "bids/sub-01/beh/sub-01_task-spherepickup_beh.tsv"));
   std::string head, line;
@@ -197,7 +209,8 @@ TEST(CsvExport, WritesEachTableWithUnitsInTheNames) {
   ASSERT_EQ(trials.size(), 2u);
   const auto duration = std::find(trials[0].begin(), trials[0].end(), "duration_s") - trials[0].begin();
   EXPECT_EQ(trials[1].at(static_cast<std::size_t>(duration)), "12.5");
-  EXPECT_EQ(parse(readFile(dir / "new/csv/event.csv"))[1], (std::vector<std::string>{"1", "0.25", "slip", "thumb, \"fast\""}));
+  EXPECT_EQ(parse(readFile(dir / "new/csv/event.csv"))[1],
+            (std::vector<std::string>{"1", "0.25", "slip", "thumb, \"fast\""}));
 }
 
 TEST(AtomicFile, LeavesTheOldFileUntilTheNewOneIsWhole) {

@@ -27,8 +27,8 @@ SampleRecord sampleAt(std::int64_t trial, std::int64_t tick) {
   return s;
 }
 
-// A child that writes trials of 100 ticks at 1 kHz until it is killed, and tells through a pipe each tick that it is about to push (>= 0)
-// and each trial that is finished (< 0).
+// A child that writes trials of 100 ticks at 1 kHz until it is killed, and tells through a pipe each tick that it is
+// about to push (>= 0) and each trial that is finished (< 0).
 [[noreturn]] void runChild(const std::string& path, int pipe) {
   const auto tell = [&](std::int64_t number) {
     if (::write(pipe, &number, sizeof number) != sizeof number) ::_exit(1);
@@ -162,7 +162,8 @@ TEST(FullSession, FailsWithTheCauseAndMarksTheFile) {
 // Samples alone can fill the disk too: the writer thread fails with nobody waiting, and close() says so.
 TEST(FullSession, TellsAtCloseWhatTheWriterThreadMet) {
   const TemporaryDirectory dir;
-  auto writer = SessionWriter::create(dir / "a.db", {}, {.block_when_full = true, .ring_capacity = 64, .max_pages = 40});
+  auto writer =
+      SessionWriter::create(dir / "a.db", {}, {.block_when_full = true, .ring_capacity = 64, .max_pages = 40});
   std::int64_t taken = 0;
   while (taken < 100'000 && writer.pushSample(sampleAt(0, taken))) ++taken;
   EXPECT_LT(taken, 100'000);
@@ -193,7 +194,8 @@ class TinyDisk {
 
 TEST(FullDisk, FailsWithTheCauseAndKeepsFinishedTrials) {
   const TinyDisk disk;
-  if (!disk.mounted()) GTEST_SKIP() << "may not mount a tmpfs here; FullSession covers the same path through SQLite's page limit";
+  if (!disk.mounted())
+    GTEST_SKIP() << "may not mount a tmpfs here; FullSession covers the same path through SQLite's page limit";
   std::string error;
   std::size_t finished = 0;
   {

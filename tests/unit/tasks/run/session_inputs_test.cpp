@@ -20,7 +20,8 @@ using tests::TemporaryDirectory;
 // Any bits, NaN with a payload, negative zero and infinity among them; now and then what was there before.
 std::vector<InputRecord> anyInputs(int count, unsigned seed) {
   std::mt19937_64 random(seed);
-  const double special[] = {std::bit_cast<double>(0x7ff8dead'beef0001u), -0.0, std::numeric_limits<double>::infinity(), 1e-320};
+  const double special[] = {std::bit_cast<double>(0x7ff8dead'beef0001u), -0.0, std::numeric_limits<double>::infinity(),
+                            1e-320};
   std::vector<InputRecord> inputs;
   InputRecord record;
   for (int k = 0; k < count; ++k) {
@@ -50,7 +51,8 @@ TEST(InputCodec, GivesBackEveryBit) {
     const auto inputs = anyInputs(20, seed);
     const auto back = unpackInputs(packed(inputs));
     ASSERT_EQ(back.size(), inputs.size());
-    for (std::size_t k = 0; k < inputs.size(); ++k) ASSERT_EQ(wordsOf(back[k]), wordsOf(inputs[k])) << "seed " << seed << ", record " << k;
+    for (std::size_t k = 0; k < inputs.size(); ++k)
+      ASSERT_EQ(wordsOf(back[k]), wordsOf(inputs[k])) << "seed " << seed << ", record " << k;
   }
 }
 
@@ -70,7 +72,9 @@ TEST(InputCodec, FindsAnyChangedByte) {
   for (std::size_t i = 0; i < chunk.data.value.size(); ++i) {
     InputChunk damaged = chunk;
     damaged.data.value[i] = static_cast<char>(damaged.data.value[i] ^ 1 << i % 8);
-    EXPECT_NE(errorOf([&] { unpackInputs(damaged); }).find("trial 8, ticks 1000 to 1002, are damaged"), std::string::npos) << "byte " << i;
+    EXPECT_NE(errorOf([&] { unpackInputs(damaged); }).find("trial 8, ticks 1000 to 1002, are damaged"),
+              std::string::npos)
+        << "byte " << i;
   }
   InputChunk moved = chunk;
   moved.first_tick = 0;
@@ -93,7 +97,8 @@ TEST(SessionInputs, ComeBackTrialByTrialInOrder) {
     hands.trial = trial;
     hands.oldest_sample = 1.0 / 3;
     writer.addHands(hands);
-    for (std::size_t k = 0; k < 1000; ++k) ASSERT_TRUE(writer.pushInput(inputs[static_cast<std::size_t>(trial) * 1000 + k]));
+    for (std::size_t k = 0; k < 1000; ++k)
+      ASSERT_TRUE(writer.pushInput(inputs[static_cast<std::size_t>(trial) * 1000 + k]));
     TrialRecord row;
     row.trial = trial;
     writer.finishTrial(row);
@@ -106,7 +111,8 @@ TEST(SessionInputs, ComeBackTrialByTrialInOrder) {
   for (std::int64_t trial = 0; trial < 3; ++trial) {
     const auto back = reader.inputs(trial);
     ASSERT_EQ(back.size(), 1000u);
-    for (std::size_t k = 0; k < 1000; ++k) ASSERT_EQ(wordsOf(back[k]), wordsOf(inputs[static_cast<std::size_t>(trial) * 1000 + k]));
+    for (std::size_t k = 0; k < 1000; ++k)
+      ASSERT_EQ(wordsOf(back[k]), wordsOf(inputs[static_cast<std::size_t>(trial) * 1000 + k]));
   }
 }
 
@@ -154,7 +160,8 @@ TEST(SessionInputs, SessionsOfFormat3AreReadAndResumed) {
   }
   {
     Database old(dir / "a.db", Database::Mode::kWrite);
-    for (const char* column : {"f0_tip_mass_kg", "f0_tip_damping_Ns_per_m", "f1_tip_mass_kg", "f1_tip_damping_Ns_per_m"}) {
+    for (const char* column :
+         {"f0_tip_mass_kg", "f0_tip_damping_Ns_per_m", "f1_tip_mass_kg", "f1_tip_damping_Ns_per_m"}) {
       old.run(fmt::format("ALTER TABLE hands DROP COLUMN \"{}\"", column));
     }
     old.run("PRAGMA user_version = 3");
@@ -180,8 +187,9 @@ TEST(SessionInputs, AFormatThatIsYetToComeIsRefused) {
   const TemporaryDirectory dir;
   SessionWriter::create(dir / "a.db", {}).close();
   Database(dir / "a.db", Database::Mode::kWrite).run("PRAGMA user_version = 99");
-  EXPECT_NE(errorOf([&] { SessionReader(dir / "a.db"); }).find("has session format 99, this pincer reads formats 2 to 6"),
-            std::string::npos);
+  EXPECT_NE(
+      errorOf([&] { SessionReader(dir / "a.db"); }).find("has session format 99, this pincer reads formats 2 to 6"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -73,7 +73,8 @@ TEST(SessionStore, TwoProgramsOnOneSessionAreRefused) {
     EXPECT_TRUE(contains(reader.warning(), "it still runs (process " + std::to_string(other.id()))) << reader.warning();
   }
   other.kill();
-  EXPECT_TRUE(contains(SessionReader(dir / "a.db").warning(), "its program was killed")) << SessionReader(dir / "a.db").warning();
+  EXPECT_TRUE(contains(SessionReader(dir / "a.db").warning(), "its program was killed"))
+      << SessionReader(dir / "a.db").warning();
   SessionWriter writer = SessionWriter::resume(dir / "a.db");  // kill -9 frees it
   writer.finishTrial(trialOf(1));
   writer.close();
@@ -105,7 +106,9 @@ TEST(SessionStore, ATrialIsNeverWrittenTwice) {
 // As a pincer before format 5 could leave it.
 void doubleTrials(const std::string& path) {
   Database old(path, Database::Mode::kWrite);
-  old.run("DROP INDEX one_row_per_trial_of_trial; INSERT INTO trial SELECT * FROM trial WHERE trial < 2; PRAGMA user_version = 4");
+  old.run(
+      "DROP INDEX one_row_per_trial_of_trial; INSERT INTO trial SELECT * FROM trial WHERE trial < 2; PRAGMA "
+      "user_version = 4");
   old.close();
 }
 
@@ -117,7 +120,8 @@ TEST(SessionStore, ReadersSayThatTrialsAreThereTwice) {
   doubleTrials(dir / "a.db");
   const SessionReader reader(dir / "a.db");
   EXPECT_EQ(reader.trials().size(), 3u);
-  EXPECT_TRUE(contains(reader.warning(), "Two programs wrote this session at once: trials 1, 2 are there more than once"))
+  EXPECT_TRUE(
+      contains(reader.warning(), "Two programs wrote this session at once: trials 1, 2 are there more than once"))
       << reader.warning();
   EXPECT_TRUE(contains(reader.warning(), "It holds 3 finished trials")) << reader.warning();
   const std::string error = errorOf([&] { SessionWriter::resume(dir / "a.db"); });

@@ -33,14 +33,16 @@ Record filled(std::int64_t seed) {
     if constexpr (std::is_arithmetic_v<Field> && !std::is_same_v<Field, std::uint64_t>) {
       const ColumnRange range = name.rangeOf<Field>();
       if (std::isfinite(range.min)) {
-        field = static_cast<Field>(range.min + std::fmod(static_cast<double>(k), std::min(1e6, range.max - range.min) + 1));
+        field =
+            static_cast<Field>(range.min + std::fmod(static_cast<double>(k), std::min(1e6, range.max - range.min) + 1));
         return;
       }
     }
     if constexpr (std::is_same_v<Field, std::string>) {
       field = "text \"" + std::to_string(k) + "\", ä\nline";
     } else if constexpr (std::is_floating_point_v<Field>) {
-      field = k % 7 == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(k) / 3 * (k % 2 ? 1e-9 : -1e12);
+      field =
+          k % 7 == 0 ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(k) / 3 * (k % 2 ? 1e-9 : -1e12);
     } else {
       field = static_cast<Field>(k);
     }
@@ -57,7 +59,8 @@ void expectSame(const Record& a, const Record& b) {
       if constexpr (std::is_same_v<Field, std::string>) {
         into.push_back(name.text() + "=" + field);
       } else if constexpr (std::is_floating_point_v<Field>) {
-        into.push_back(name.text() + "=" + (field != field ? "nan" : std::to_string(std::bit_cast<std::uint64_t>(field))));
+        into.push_back(name.text() + "=" +
+                       (field != field ? "nan" : std::to_string(std::bit_cast<std::uint64_t>(field))));
       } else {
         into.push_back(name.text() + "=" + std::to_string(field));
       }
@@ -109,14 +112,16 @@ TEST(SessionStore, KeepsResponsesToTheBit) {
     writer.close();
   }
   const SessionReader reader(dir / "a.db");
-  for (std::int64_t k = 0; k < 3; ++k) expectSame(reader.responses()[static_cast<std::size_t>(k)], filled<ResponseRecord>(k));
+  for (std::int64_t k = 0; k < 3; ++k)
+    expectSame(reader.responses()[static_cast<std::size_t>(k)], filled<ResponseRecord>(k));
 }
 
 TEST(SessionStore, NamesColumnsWithUnits) {
   std::vector<std::string> names;
   const SampleRecord sample;
   forEachColumn(sample, [&](const ColumnName& name, const auto&) { names.push_back(name.text()); });
-  for (const char* expected : {"time_s", "p_WB_z_m", "q_WB_w", "v_WB_x_m_per_s", "f0_normal_N", "f1_place_shown_L_y_m", "tick_us"}) {
+  for (const char* expected :
+       {"time_s", "p_WB_z_m", "q_WB_w", "v_WB_x_m_per_s", "f0_normal_N", "f1_place_shown_L_y_m", "tick_us"}) {
     EXPECT_NE(std::find(names.begin(), names.end(), expected), names.end()) << expected;
   }
   std::sort(names.begin(), names.end());
@@ -198,7 +203,8 @@ TEST(SessionStore, SaysThatItWasLeftOrAborted) {
   EXPECT_THROW(writer.addEvent({}), InputError);
   const SessionReader stopped(dir / "stopped.db");
   EXPECT_EQ(stopped.state(), "aborted: interrupted (Ctrl-C)");
-  EXPECT_NE(stopped.warning().find("interrupted (Ctrl-C)). It holds 1 finished trial"), std::string::npos) << stopped.warning();
+  EXPECT_NE(stopped.warning().find("interrupted (Ctrl-C)). It holds 1 finished trial"), std::string::npos)
+      << stopped.warning();
 }
 
 TEST(SessionStore, RefusesToOverwriteAndNamesTheRemedy) {
@@ -230,7 +236,8 @@ TEST(SessionStore, ReaderRefusesWhatIsNoSession) {
   std::ofstream(dir / "text.db") << std::string(5000, 'x');
   EXPECT_NE(errorOf([&] { SessionReader(dir / "text.db"); }).find("no SQLite database"), std::string::npos);
   std::ofstream(dir / "empty.db").close();
-  EXPECT_NE(errorOf([&] { SessionReader(dir / "empty.db"); }).find("killed while it was being made"), std::string::npos);
+  EXPECT_NE(errorOf([&] { SessionReader(dir / "empty.db"); }).find("killed while it was being made"),
+            std::string::npos);
 }
 
 // Any text survives, whatever its bytes: zeros, quotes, broken UTF-8.

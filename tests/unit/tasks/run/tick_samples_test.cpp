@@ -1,4 +1,5 @@
-// The tick as a function of model, state and samples: its purity, its frames, and what it does with samples that can't be trusted.
+// The tick as a function of model, state and samples: its purity, its frames, and what it
+// does with samples that can't be trusted.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -98,7 +99,9 @@ struct LiveRig : Rig {
   void run(int ticks) {
     for (int k = 0; k < ticks; ++k) step(samplesAt(model, next));
   }
-  engine::StepReport step(const std::vector<FingerInputs>& samples) { return tick(model, state, scratch, samples, kTick * next++); }
+  engine::StepReport step(const std::vector<FingerInputs>& samples) {
+    return tick(model, state, scratch, samples, kTick * next++);
+  }
   Vec3 force(std::size_t finger) const { return scratch.outputs[finger].f_D; }
 };
 
@@ -182,7 +185,8 @@ TEST(Tick, FiltersAMeasuredVelocityAsAFirstOrderLowPass) {
     samples[0].arm.v_DF = v_D;
     rig.step(samples);
     const double share = -std::expm1(-2 * std::numbers::pi * rig.model.velocity_cutoff * kTick * n);
-    EXPECT_LE((rig.state.mounts[0].v_WF - share * (rig.model.mounts[0].X_WD.q * v_D)).norm(), 1e-14) << n;  // 20 updates' rounding
+    // 20 updates' rounding
+    EXPECT_LE((rig.state.mounts[0].v_WF - share * (rig.model.mounts[0].X_WD.q * v_D)).norm(), 1e-14) << n;
   }
 }
 
@@ -234,22 +238,23 @@ std::string nameOfTrouble(const ::testing::TestParamInfo<Trouble>& info) { retur
 
 using devices::ArmSample;
 using devices::Trip;
-INSTANTIATE_TEST_SUITE_P(OfEveryKind, TickTrouble,
-                         ::testing::Values(Trouble{"NanPosition", Trip::kNotFinite, [](ArmSample& s) { s.p_DF.y() = kNan; }},
-                                           Trouble{"NanVelocity", Trip::kNotFinite, [](ArmSample& s) { s.v_DF = Vec3(0, kNan, 0); }},
-                                           Trouble{"NanOrientation", Trip::kNotFinite, [](ArmSample& s) { s.q_DF->w() = kNan; }},
-                                           Trouble{"NanTime", Trip::kNotFinite, [](ArmSample& s) { s.time = kNan; }},
-                                           Trouble{"InfinitePosition", Trip::kNotFinite, [](ArmSample& s) { s.p_DF.z() = HUGE_VAL; }},
-                                           Trouble{"Invalid", Trip::kInvalidSample, [](ArmSample& s) { s.valid = false; }},
-                                           Trouble{"InvalidAndNan", Trip::kInvalidSample,
-                                                   [](ArmSample& s) {
-                                                     s = {};
-                                                     s.p_DF.setConstant(kNan);
-                                                   }},
-                                           Trouble{"Stale", Trip::kStaleSample, [](ArmSample& s) { s.time -= 4e-3; }},
-                                           Trouble{"FromTheFuture", Trip::kStaleSample, [](ArmSample& s) { s.time += 4e-3; }},
-                                           Trouble{"OverSpeed", Trip::kOverSpeed, [](ArmSample& s) { s.v_DF = Vec3(7, 0, 0); }}),
-                         nameOfTrouble);
+INSTANTIATE_TEST_SUITE_P(
+    OfEveryKind, TickTrouble,
+    ::testing::Values(Trouble{"NanPosition", Trip::kNotFinite, [](ArmSample& s) { s.p_DF.y() = kNan; }},
+                      Trouble{"NanVelocity", Trip::kNotFinite, [](ArmSample& s) { s.v_DF = Vec3(0, kNan, 0); }},
+                      Trouble{"NanOrientation", Trip::kNotFinite, [](ArmSample& s) { s.q_DF->w() = kNan; }},
+                      Trouble{"NanTime", Trip::kNotFinite, [](ArmSample& s) { s.time = kNan; }},
+                      Trouble{"InfinitePosition", Trip::kNotFinite, [](ArmSample& s) { s.p_DF.z() = HUGE_VAL; }},
+                      Trouble{"Invalid", Trip::kInvalidSample, [](ArmSample& s) { s.valid = false; }},
+                      Trouble{"InvalidAndNan", Trip::kInvalidSample,
+                              [](ArmSample& s) {
+                                s = {};
+                                s.p_DF.setConstant(kNan);
+                              }},
+                      Trouble{"Stale", Trip::kStaleSample, [](ArmSample& s) { s.time -= 4e-3; }},
+                      Trouble{"FromTheFuture", Trip::kStaleSample, [](ArmSample& s) { s.time += 4e-3; }},
+                      Trouble{"OverSpeed", Trip::kOverSpeed, [](ArmSample& s) { s.v_DF = Vec3(7, 0, 0); }}),
+    nameOfTrouble);
 
 // A device that fell silent repeats its last sample.
 TEST(Tick, CutsTheForceWhenAnArmFallsSilent) {
@@ -294,8 +299,8 @@ TEST(Tick, PassivityCountsTheForceThatTheGateLetThrough) {
   EXPECT_NEAR(rig.state.passivity.energy(), energy, 1e-12);
 }
 
-// Off, but watching, nothing that reaches a motor changes by a bit; on, fingers that take out what they never brought in (here the ball's height,
-// as they let it down from where it began) are braked.
+// Off, but watching, nothing that reaches a motor changes by a bit; on, fingers that take out what they never brought
+// in (here the ball's height, as they let it down from where it began) are braked.
 TEST(Tick, PassivityChangesForcesOnlyWhereItIsOn) {
   Rig plain, watched, braked;
   watched.state.passivity = braked.state.passivity = grasp::PassivityState(2);

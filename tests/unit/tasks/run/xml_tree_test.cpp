@@ -29,7 +29,8 @@ std::string nested(int levels) {
 }
 
 TEST(XmlTree, KeepsTagsAttributesAndTheirOrder) {
-  const XmlElement root = parseXml("<!-- c --><a x=\"1\" w='2 &lt; 3'>\n  <b/>\n  <c y=\"\"/><!-- d -->\n</a>", "robot.xml");
+  const XmlElement root =
+      parseXml("<!-- c --><a x=\"1\" w='2 &lt; 3'>\n  <b/>\n  <c y=\"\"/><!-- d -->\n</a>", "robot.xml");
   EXPECT_EQ(root.tag, "a");
   ASSERT_EQ(root.attributes.size(), 2u);
   EXPECT_EQ(root.attributes[0].name, "x");
@@ -54,7 +55,8 @@ TEST(XmlTree, TellsEachElementsFileAndLine) {
 TEST(XmlTree, RefusesWhatIsntXml) {
   for (const char* text : {"<a>", "<a></b>", "<a x=1/>", "<a x=\"1\" x=\"2\"/>", "<a", "plain"})
     EXPECT_NE(complaint(text).find("robot.xml:"), std::string::npos) << text;
-  EXPECT_NE(complaint("<a>\n<b></c></a>").find("robot.xml:2: isn't well-formed XML"), std::string::npos) << complaint("<a>\n<b></c></a>");
+  EXPECT_NE(complaint("<a>\n<b></c></a>").find("robot.xml:2: isn't well-formed XML"), std::string::npos)
+      << complaint("<a>\n<b></c></a>");
   EXPECT_EQ(complaint("<!-- nothing -->"), "robot.xml: has no element.");
 }
 
@@ -68,7 +70,8 @@ TEST(XmlTree, RefusesTextBetweenElements) {
 
 TEST(XmlTree, TakesAsManyLevelsAsItSaysAndNoMore) {
   EXPECT_EQ(complaint(nested(kDeepestXml)), "");
-  EXPECT_EQ(complaint(nested(kDeepestXml + 1)), fmt::format("robot.xml:1: <a> lies deeper than {} levels.", kDeepestXml));
+  EXPECT_EQ(complaint(nested(kDeepestXml + 1)),
+            fmt::format("robot.xml:1: <a> lies deeper than {} levels.", kDeepestXml));
   EXPECT_NE(complaint(nested(100000)), "") << "the stack would not bear it";
 }
 

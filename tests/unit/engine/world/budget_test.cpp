@@ -1,0 +1,109 @@
+// The budget: what a tick may cost, counted.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "pincer/contact/error.h"
+#include "pincer/engine/solve/sweeps.h"
+#include "pincer/engine/step.h"
+#include "pincer/tests/support/contact_problems.h"
+#include "pincer/tests/support/worlds.h"
+
+namespace pincer::engine {
+namespace {
+
+using tests::startAt;
+
+struct HeapRun {
+  WorldState state;
+  int flagged = 0, spent = 0;
+  std::int64_t least_left = kNoLimit;
+};
+
+// Boxes dropped on each other, 300 ticks.
+HeapRun dropBoxes(double budget) {
+  WorldOptions options;
+  options.solver.budget = budget;
+  WorldBuilder builder{options};
+  std::vector<BodyStart> starts{startAt(Vec3::Zero())};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+  for (int i = 0; i < 6; ++i) {
+    builder.addBody({"box", contact::Box{Vec3(0.02, 0.015, 0.01)}, true, 0.1, {}});
+    const Pose X{quatFromRotationVector(Vec3(0.4 * i, 0.3, 0.2 * i)),
+                 Vec3(0.004 * (i % 2), 0.003 * (i % 3), 0.03 + 0.045 * i)};
+    starts.push_back({X, Vec3::Zero(), Vec3::Zero()});
+  }
+  const WorldModel model = builder.build();
+  HeapRun run{makeState(model, starts, {})};
+  WorldScratch scratch(model);
+  const double energy = kineticEnergy(model, run.state) + potentialEnergy(model, run.state);
+  for (int i = 0; i < 300; ++i) {
+    const StepReport report = step(model, run.state, scratch);
+    run.flagged += report.status != kStepOk;
+    run.spent += (report.status & kBudgetSpent) != 0;
+    run.least_left = std::min(run.least_left, scratch.operations_left);
+    // as `pincer stress` asks
+    EXPECT_LE(kineticEnergy(model, run.state) + potentialEnergy(model, run.state), energy * (1 + 1e-5));
+    for (int b = 1; b <= 6; ++b) EXPECT_GT(run.state.bodies[b].X_WI.p.z(), 0) << "tick " << i;
+  }
+  return run;
+}
+
+TEST(Budget, ThatIsNotUsedChangesNoBit) {
+  const HeapRun without = dropBoxes(0), with = dropBoxes(1);
+  EXPECT_EQ(with.spent, 0);
+  EXPECT_EQ(hashOf(without.state), hashOf(with.state));
+}
+
+TEST(Budget, RunsOutFlaggedAndAddsNoEnergy) {
+  const double budget = 5e-5;
+  const HeapRun run = dropBoxes(budget);
+  EXPECT_GT(run.spent, 0);
+  EXPECT_GE(run.flagged, run.spent);
+  // What is spent beyond it: the step that was refused, and the sweeps that every tick gets.
+  EXPECT_GT(run.least_left, -static_cast<std::int64_t>(1e-3 * kOperationsPerSecond));
+}
+
+TEST(Budget, IsDeterministic) { EXPECT_EQ(hashOf(dropBoxes(5e-5).state), hashOf(dropBoxes(5e-5).state)); }
+
+// What was left of the tick was done in one part, in which needles turned so far that contacts gave them energy: 13 of
+// these worlds gained some, up to 600 times what they had.
+TEST(Budget, SpinningNeedlesGainNoEnergyWhereItRunsOut) {
+  int spent = 0;
+  for (int n = 0; n < 40; ++n) {
+    WorldOptions options;
+    options.solver.budget = 1e-4;
+    tests::EngineWorld w = tests::spinningNeedles(n, 5e-4, 3, 200, options);
+    WorldScratch scratch(w.model);
+    const double most = w.energy() * (1 + 1e-5);  // as `pincer stress` asks
+    for (int i = 0; i < 200; ++i) {
+      spent += (step(w.model, w.state, scratch).status & kBudgetSpent) != 0;
+      ASSERT_LE(w.energy(), most) << n << ", tick " << i;
+    }
+  }
+  EXPECT_GT(spent, 1000);
+}
+
+// The sweeps that every tick gets counted as nothing, so that what was kept back for later was spent again and
+// again: ticks of 3 ms at a budget of 0.5.
+TEST(Budget, SweepsOfAProblemThatHasNoneLeftAreCounted) {
+  tests::RandomScenes random(5);
+  for (int n = 0; n < 20; ++n) {
+    tests::OwnedContactProblem p = random.stack(20, 1, 1e-3);  // eighty contacts
+    SolverScratch scratch(static_cast<int>(p.mu.size()), p.movers);
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u = r;
+    scratch.operations_left = 0;
+    const SolveResult result = solveContacts(p.view(), {}, scratch, {r.data(), r.size()}, {u.data(), u.size()});
+    ASSERT_GT(result.iterations, 0) << n;
+    EXPECT_LE(scratch.operations_left, -kPerContactSwept * result.iterations * static_cast<int>(p.mu.size())) << n;
+  }
+}
+
+TEST(Budget, OutOfRangeIsRefused) {
+  WorldOptions options;
+  options.solver.budget = 100;
+  EXPECT_THROW(WorldBuilder{options}, InputError);
+}
+
+}  // namespace
+}  // namespace pincer::engine

@@ -1,0 +1,156 @@
+// Flat pads on meshes: the places on which they stand, seen from the smooth surface.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "pincer/contact/finger_query.h"
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh/lathe.h"
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/smooth_mesh.h"
+#include "pincer/grasp/tick/scratch.h"
+#include "pincer/tests/support/random_poses.h"
+#include "pincer/tests/support/worlds.h"
+
+namespace pincer::contact {
+namespace {
+
+constexpr double kHalf = 9.5e-3, kThin = 1.5e-3, kRound = 5e-4;  // of the pad's core [m]
+constexpr double kPressed = 1e-5;                                // [m]
+
+// 20 mm wide; its faces look along z.
+PadTip squarePad() {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i)
+    corners.push_back({i & 1 ? kHalf : -kHalf, i & 2 ? kHalf : -kHalf, i & 4 ? kThin : -kThin});
+  return {Polytope::hullOf(corners, "pad"), kRound};
+}
+
+Shape smooth(const TriangleMesh& mesh) { return Mesh{SmoothMesh::build(mesh)}; }
+
+// Lowered from above onto what is `top` high under it, turned by `yaw`.
+FingerContacts padOnTop(const Shape& body, double top, double yaw = 0, double x = 0) {
+  FingerTracker tracker;
+  PatchCache cache(256);
+  return queryFinger(body, squarePad(), {tests::about(Vec3(0, 0, 1), yaw), Vec3(x, 0, top + kThin + kRound - kPressed)},
+                     1e-3, tracker, cache);
+}
+
+// The contacts that are no deeper than they should be, and no shallower, by more than `off`.
+int countAtDepth(const FingerContacts& found, double off) {
+  int count = 0;
+  for (int i = 0; i < found.count; ++i)
+    count += std::abs(found.points[static_cast<std::size_t>(i)].phi + kPressed) < off;
+  return count;
+}
+
+// Of the places across z: their least and largest x and y.
+Eigen::AlignedBox2d spanOf(const FingerContacts& found) {
+  Eigen::AlignedBox2d box;
+  for (int i = 0; i < found.count; ++i) box.extend(Vec2(found.points[static_cast<std::size_t>(i)].p_BS.head<2>()));
+  return box;
+}
+
+TEST(PadOnMesh, StandsOnTheCornersOfWhatItSharesWithAFace) {
+  for (const double half : {0.02, 0.006}) {
+    const FingerContacts found = padOnTop(smooth(gridBox(Vec3(half, half, 0.01), 5)), 0.01);
+    EXPECT_GE(countAtDepth(found, 1e-12), 4) << half;
+    EXPECT_EQ(countAtDepth(found, 1e-12), found.count) << half;
+    const double reach = std::min(half, kHalf);
+    EXPECT_NEAR(spanOf(found).max().x(), reach, 1e-9) << half;
+    EXPECT_NEAR(spanOf(found).min().y(), -reach, 1e-9) << half;
+  }
+}
+
+TEST(PadOnMesh, StandsOnALineOfAStraightWall) {
+  const TriangleMesh upright = lathe({{0, -0.03}, {0.018, -0.03}, {0.018, 0.03}, {0, 0.03}}, 48);
+  const Shape lying = smooth(transformed(upright, {tests::about(Vec3(0, 1, 0), M_PI / 2), Vec3::Zero()}));
+  const FingerContacts found = padOnTop(lying, 0.018, 0.2);
+  EXPECT_EQ(countAtDepth(found, 1e-7), found.count);
+  const double along = kHalf / std::cos(0.2);
+  EXPECT_NEAR(spanOf(found).max().x(), along, 2e-4);
+  EXPECT_NEAR(spanOf(found).min().x(), -along, 2e-4);
+  EXPECT_LT(spanOf(found).sizes().y(), 1e-4);
+}
+
+TEST(PadOnMesh, TouchesABallAtOnePlace) {
+  const FingerContacts found = padOnTop(smooth(geodesicSphere(0.018, 12)), 0.018);
+  EXPECT_EQ(found.count, 1);
+}
+
+// Over a hollow 1.5 mm deep in the middle of a ring the pad stands on the ring's inner edges, or on its own.
+TEST(PadOnMesh, StandsAcrossAHollow) {
+  const Shape dish = smooth(lathe({{0, 0}, {0.008, 0.0015}, {0.02, 0.0015}, {0.02, -0.01}, {0, -0.01}}, 64));
+  const FingerContacts found = padOnTop(dish, 0.0015);
+  ASSERT_GE(found.count, 4);
+  EXPECT_LT(spanOf(found).min().x(), -0.005);
+  EXPECT_GT(spanOf(found).max().x(), 0.005);
+  EXPECT_LT(spanOf(found).min().y(), -0.005);
+  EXPECT_GT(spanOf(found).max().y(), 0.005);
+}
+
+TEST(PadOnMesh, KeepsItsPointsWhileItSlidesAndTilts) {
+  const Shape face = smooth(box(Vec3(0.03, 0.03, 0.01)));
+  FingerTracker tracker;
+  PatchCache cache(256);
+  std::vector<std::uint32_t> first;
+  for (int i = 0; i < 200; ++i) {
+    const Pose X_BF{tests::about(Vec3(1, 0.3, 0), 2e-5 * i), Vec3(1e-5 * i, 2e-5 * i, 0.01 + kThin + kRound)};
+    const FingerContacts found = queryFinger(face, squarePad(), X_BF, 1e-3, tracker, cache);
+    std::vector<std::uint32_t> names;
+    for (int k = 0; k < found.count; ++k) names.push_back(found.points[static_cast<std::size_t>(k)].feature);
+    std::sort(names.begin(), names.end());
+    if (i == 0) first = names;
+    ASSERT_EQ(names.size(), 4u) << i;
+    EXPECT_EQ(names, first) << i;
+  }
+}
+
+// The ball's triangles are far from the pad's edges, each of which would take six queries.
+TEST(PadOnMesh, AsksNoEdgeThatIsFarFromABall) {
+  const FingerContacts found = padOnTop(smooth(geodesicSphere(0.015, 8)), 0.015, 0.3, 1e-3);
+  EXPECT_EQ(found.count, 1);
+  EXPECT_LT(found.queries, 50);  // of the descents from nowhere and from four corners
+}
+
+}  // namespace
+}  // namespace pincer::contact
+
+namespace pincer::grasp {
+namespace {
+
+// A barrel between two pads buzzed, as each pad's edges and its middle took turns, and a spool rocked off.
+TEST(PadOnMesh, HoldsABarrelAndASpool) {
+  for (const double bulge : {0.003, -0.003}) {
+    std::vector<Vec2> profile{{0, -0.02}};
+    for (int i = 0; i <= 16; ++i) profile.push_back({0.018 + bulge * math::sin(M_PI * i / 16), -0.02 + 0.04 * i / 16});
+    profile.push_back({0, 0.02});
+    engine::WorldBuilder builder{engine::WorldOptions{}};
+    builder.addBody({"part", contact::smooth(contact::lathe(profile, 48)), true, 0.1, {0.6, 0.6, 0, 0}});
+    std::vector<FingerModel> fingers = {tests::softFinger("left", 5000), tests::softFinger("right", 5000)};
+    std::vector<Vec3> corners;
+    for (int i = 0; i < 8; ++i)
+      corners.push_back({i & 1 ? 1.5e-3 : -1.5e-3, i & 2 ? 0.022 : -0.022, i & 4 ? 0.022 : -0.022});
+    for (FingerModel& f : fingers) {
+      f.shape = contact::PadTip{contact::Polytope::hullOf(corners, "pad"), 5e-4};
+      f.pad.patch_radius = 0.004;
+    }
+    const GraspModel model = buildGrasp(builder, fingers);
+    const double touch = std::max(0.018, 0.018 + bulge) + 2e-3;
+    GraspState state = makeState(model, {tests::startAt(Vec3(0, 0, 0.1), Vec3::Zero(), Vec3(0, 0.3, 0))},
+                                 {Vec3(-touch, 0, 0.1), Vec3(touch, 0, 0.1)});
+    GraspScratch scratch(model);
+    std::vector<FingerInput> inputs(2);
+    for (int i = 0; i < 2; ++i)
+      inputs[static_cast<std::size_t>(i)].p_WF = Vec3((i == 0 ? -1 : 1) * (touch - 3e-3), 0, 0.1);
+    for (int i = 0; i < 1000; ++i) step(model, state, scratch, inputs);
+    const Pose held = state.world.bodies[0].X_WI;
+    for (int i = 0; i < 3000; ++i) EXPECT_EQ(step(model, state, scratch, inputs).status, engine::kStepOk);
+    EXPECT_LT((state.world.bodies[0].X_WI.p - held.p).norm(), 1e-9) << bulge;
+    EXPECT_LT(angleBetween(state.world.bodies[0].X_WI.q, held.q), 1e-7) << bulge;
+  }
+}
+
+}  // namespace
+}  // namespace pincer::grasp
