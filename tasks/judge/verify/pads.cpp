@@ -1,5 +1,4 @@
-// Objects between two pads: held, shaken, let slip, spun, rolled, hung beside
-// their centre. The answers are closed forms:
+// Objects between two pads: held, shaken, let slip, spun, rolled, hung beside their centre. The closed forms:
 //
 //   stuck     the object moves as its pads do
 //   tilt      a plate whose centre of mass is e beside the pads hangs at 2 k theta =
