@@ -6,8 +6,9 @@
 namespace pincer::devices::emulate {
 
 std::string changedJson(std::string text, std::size_t most, std::mt19937_64& random) {
-  constexpr std::array<std::string_view, 17> kPieces{"{",    "}",   "[",       "]",       "\"", ",",     "9",       "e99", "null",
-                                                     "true", ":1,", "\\u0000", "\\u00e9", "-",  "1e400", "\\ud800", "\xff"};
+  constexpr std::array<std::string_view, 17> kPieces{"{",       "}",   "[",     "]",       "\"",  ",",
+                                                     "9",       "e99", "null",  "true",    ":1,", "\\u0000",
+                                                     "\\u00e9", "-",   "1e400", "\\ud800", "\xff"};
   constexpr std::size_t kLongest = 30;
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
   for (std::size_t left = 1 + below(most); left > 0 && !text.empty(); --left) {

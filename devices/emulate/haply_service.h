@@ -23,8 +23,9 @@ struct HaplyServiceSettings {
   double force_scale = 1;
   std::string preset = "defaults";  // of its devices, and their damping, before somebody configures them
   double damping = 0;
-  double gate_gain = 0.3;     // of their force gate
-  double gate_neutral = 0.3;  // the gain that lets every force through; lower ones let gain / neutral of a force through that oscillates
+  double gate_gain = 0.3;  // of their force gate
+  double gate_neutral =
+      0.3;  // the gain that lets every force through; lower ones let gain / neutral of a force through that oscillates
   bool takes_configuration = true;  // of a session's first message
   bool tells_force = true;          // that it applies
   bool tells_others = true;         // of a device that one session commands, the other sessions

@@ -40,8 +40,8 @@ struct HaplyService::Texts {
           R"("gravity_compensation":{{"enabled":true,"scaling_factor":1.0}},"streaming_mode":"USB","torque_scaling":{{"enabled":true}},)"
           R"("home_return":{{"enabled":false}},"preset":"{}","basis":{{"permutation":"XYZ"}},"mount":{{"position":{{"x":0,"y":0,"z":0}},)"
           R"("rotation":{},"scale":{{"x":1,"y":1,"z":1}}}},"filters":{{"force_gate":{{"gain":{}}},"damping":{{"scalar":{}}}}})",
-          plant.settings().id, service.fault_ == HaplyFault::kSettingsChanged ? "arm_front" : service.settings_.preset, kUpright,
-          service.settings_.gate_gain, service.settings_.damping);
+          plant.settings().id, service.fault_ == HaplyFault::kSettingsChanged ? "arm_front" : service.settings_.preset,
+          kUpright, service.settings_.gate_gain, service.settings_.damping);
     }
     text += '}';
   }
@@ -146,7 +146,8 @@ struct HaplyService::Texts {
     if (service.fault_ == HaplyFault::kDeafToForces) f_H.setZero();
     const double share = std::min(1.0, service.settings_.gate_gain / service.settings_.gate_neutral);
     for (auto& plant : service.plants_) {
-      if (plant->settings().id == *id) plant->command(service.settings_.force_scale * f_H, share), session.commanded = true;
+      if (plant->settings().id == *id)
+        plant->command(service.settings_.force_scale * f_H, share), session.commanded = true;
     }
   }
 };

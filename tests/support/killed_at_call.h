@@ -13,7 +13,8 @@ enum class Ended { kKilled, kByItself, kNotTraced };
 
 // Continues a stopped child to its next stop. False: it has ended.
 inline bool goOn(pid_t child, int& status) {
-  return ::ptrace(PTRACE_SYSCALL, child, nullptr, nullptr) == 0 && ::waitpid(child, &status, 0) == child && WIFSTOPPED(status);
+  return ::ptrace(PTRACE_SYSCALL, child, nullptr, nullptr) == 0 && ::waitpid(child, &status, 0) == child &&
+         WIFSTOPPED(status);
 }
 
 // Calls are those of the child's first thread, from 0, killed as it enters the call. `act` must not return.
@@ -28,7 +29,8 @@ Ended killedAtCall(int call, const Act& act) {
   int status = 0;
   if (child < 0 || ::waitpid(child, &status, 0) != child || !WIFSTOPPED(status)) return Ended::kNotTraced;
   bool runs = goOn(child, status);
-  for (int stop = 0; runs && stop < 2 * call; ++stop) runs = goOn(child, status);  // each call stops twice: as it begins and as it ends
+  for (int stop = 0; runs && stop < 2 * call; ++stop)
+    runs = goOn(child, status);  // each call stops twice: as it begins and as it ends
   if (!runs) return Ended::kByItself;
   ::kill(child, SIGKILL);
   while (!WIFSIGNALED(status) && ::waitpid(child, &status, 0) == child) {

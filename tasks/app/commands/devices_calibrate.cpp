@@ -123,9 +123,10 @@ void addDevicesCalibrate(CLI::App& devices, int& exit_code) {
       ->add_option("--calibration", arguments->calibrations,
                    "With --touch: files of the two arms as they are known so far")
       ->delimiter(',');
-  CLI::Option* align =
-      command->add_option("--align", arguments->align, "Of haply: the grip's turn of now becomes this finger's in the scene")
-          ->check(CLI::IsMember({"index", "thumb"}));
+  CLI::Option* align = command
+                           ->add_option("--align", arguments->align,
+                                        "Of haply: the grip's turn of now becomes this finger's in the scene")
+                           ->check(CLI::IsMember({"index", "thumb"}));
   command
       ->add_option("--undrift", arguments->undrift,
                    "Of haply: this finger is held as in the scene; takes out how far the grip's yaw drifted")

@@ -151,8 +151,8 @@ int touchWith(HaplyHost& host, const CalibrateArguments& arguments, const ArmBas
 }  // namespace
 
 int calibrateByTouch(const CalibrateArguments& arguments) {
-  if (arguments.devices != "haply" || arguments.here || !arguments.align.empty() || !arguments.undrift.empty() || !arguments.set.empty() ||
-      !arguments.load.empty())
+  if (arguments.devices != "haply" || arguments.here || !arguments.align.empty() || !arguments.undrift.empty() ||
+      !arguments.set.empty() || !arguments.load.empty())
     refuseUsage(
         "--touch stands alone: pincer devices calibrate INDEX,THUMB --devices haply --touch --calibration "
         "A.json,B.json --save B.json");

@@ -40,7 +40,8 @@ std::vector<Record> haplyTexts(MeasureContext& context) {
   std::int64_t taken = 0, unsound = 0, no_json = 0, done = 0;
   for (; done < wanted && !(done % 1024 == 0 && context.interrupted()); ++done) {
     if (done % 1024 == 0) context.progress(static_cast<double>(done) / static_cast<double>(wanted));
-    const std::string text = devices::emulate::changedJson(seeds[static_cast<std::size_t>(done % 2)], kMostChanges, random);
+    const std::string text =
+        devices::emulate::changedJson(seeds[static_cast<std::size_t>(done % 2)], kMostChanges, random);
     if (readService(text, message) != devices::haply::ReadError::kNone) {
       unsound += message.count != 0 ? 1 : 0;  // refused, and yet it tells something
       continue;

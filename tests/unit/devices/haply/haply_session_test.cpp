@@ -346,7 +346,8 @@ TEST(HaplySession, PushesOnlyWhereTheForceGateLetsWhatChangesSignThrough) {
       wire.run(0.6);
       const bool passes = given || neutral == wire.service.settings().gate_gain;
       EXPECT_EQ(wire.session.doubted(), !passes) << wire.session.complaint();
-      EXPECT_EQ(wire.session.complaint().find("--force-gate") != std::string::npos, !passes) << wire.session.complaint();
+      EXPECT_EQ(wire.session.complaint().find("--force-gate") != std::string::npos, !passes)
+          << wire.session.complaint();
       for (const double f : {1.0, -1.0, 1.0}) {
         wire.push({0, 0, f});
         wire.run(0.03);

@@ -90,8 +90,8 @@ TEST(HaplyCommands, CalibrateTakesOutTheDriftOfAGripAndRefusesAnotherTurn) {
   HaplyServer server;
   const std::string file = folder / "A.json";
   const auto calibrate = [&](const char* option) {
-    return runPincer({"devices", "calibrate", "049D", "--devices", "haply", option, "index", "--grip", "1605", "--load", file, "--save",
-                      file, "--service", server.place()});
+    return runPincer({"devices", "calibrate", "049D", "--devices", "haply", option, "index", "--grip", "1605", "--load",
+                      file, "--save", file, "--service", server.place()});
   };
   ASSERT_EQ(runPincer({"devices", "calibrate", "049D", "--devices", "haply", "--save", file}).exit_code, 0);
   EXPECT_TRUE(contains(calibrate("--undrift").error, "--align")) << "never aligned";

@@ -134,7 +134,10 @@ void expectMended(const TemporaryDirectory& dir, int call) {
   if (is_there) {
     EXPECT_EQ(errorOf([&] { SessionReader reader(dir / "a.db"); }), "");
   }
-  EXPECT_EQ(errorOf([&] { (is_there ? SessionWriter::resume(dir / "a.db") : SessionWriter::create(dir / "a.db", {})).close(); }), "");
+  EXPECT_EQ(errorOf([&] {
+              (is_there ? SessionWriter::resume(dir / "a.db") : SessionWriter::create(dir / "a.db", {})).close();
+            }),
+            "");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(dir.path()), {}), 1) << "killed at system call " << call;
 }
 
