@@ -3,7 +3,7 @@
 // The C library's sin, exp, pow .. choose instructions by the processor at run time, and round differently with
 // them. These are plain IEEE 754 arithmetic: additions, multiplications, divisions and square roots in a fixed
 // order, without fused multiply-add. Errors: at most 1 unit in the last place (ulp) of the exact result, erfc 2
-// ulp; tests/unit/contact/functions_*.cpp measure them. Special values (NaN, infinities, signed zeros,
+// ulp; tests/unit/contact/functions measure them. Special values (NaN, infinities, signed zeros,
 // arguments out of range) are those of the C standard's annex F. errno isn't set, and no function depends on
 // the rounding mode other than to nearest.
 //

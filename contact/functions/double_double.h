@@ -98,8 +98,7 @@ constexpr Nearest nearest(double x) {
   return {t - kShift, static_cast<int>(static_cast<std::uint32_t>(bitsOf(t)))};
 }
 
-// Numbers that several functions use; tests/unit/contact/functions_constants.cpp
-// compares them with a library of any precision.
+// Numbers that several functions use; tests/unit/contact/functions/accuracy_mpfr_test.cpp compares them with MPFR's.
 constexpr DoubleDouble kHalfPi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 constexpr DoubleDouble kLn2{0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 
