@@ -8,9 +8,10 @@ namespace pincer::tasks::keys {
 
 using Word = std::string_view;
 
-inline constexpr std::array<Word, 19> kScene = {
-    "version", "description", "gravity", "tick",   "duration", "solver",  "robots", "bodies", "combination", "pairs",
-    "joints",  "couplings",   "tendons", "drives", "frames",   "fingers", "record", "expect", "camera"};
+inline constexpr std::array<Word, 19> kScene = {"version",  "description", "camera",    "gravity", "tick",
+                                                "duration", "solver",      "robots",    "bodies",  "combination",
+                                                "pairs",    "joints",      "couplings", "tendons", "drives",
+                                                "frames",   "fingers",     "record",    "expect"};
 inline constexpr std::array<Word, 4> kCamera = {"yaw", "pitch", "distance", "target"};
 inline constexpr std::array<Word, 7> kRobot = {"name", "file", "keyframe", "start", "drives", "position", "rotation"};
 inline constexpr std::array<Word, 8> kSolver = {"tolerance",          "accuracy",  "max_contacts", "contact_margin",

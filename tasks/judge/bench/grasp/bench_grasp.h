@@ -16,10 +16,10 @@ grasp::FingerModel benchFinger(const char* name, double stiffness = 1000, double
 
 class BenchGrasp {
  public:
+  // No methods: all are ours.
   BenchGrasp(engine::WorldBuilder builder, const std::vector<engine::BodyStart>& bodies,
-             std::vector<grasp::FingerModel> fingers,
-             // no methods: all are ours
-             const std::vector<Vec3>& devices, const std::vector<grasp::FingerMethod>& methods = {});
+             std::vector<grasp::FingerModel> fingers, const std::vector<Vec3>& devices,
+             const std::vector<grasp::FingerMethod>& methods = {});
 
   // One tick, each device where leadFinger put it.
   engine::StepReport tick();

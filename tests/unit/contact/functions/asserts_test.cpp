@@ -21,7 +21,7 @@ TEST(Demand, EndsTheProgramWithPlaceMessageAndCondition) {
   const std::vector<int> inputs(1);
   EXPECT_DEATH(
       PINCER_DEMAND(inputs.size() == 2, "one input per finger"),
-      "asserts.cpp:[0-9]+: one input per finger .inputs.size.. == 2 doesn't hold.. The program that calls pincer");
+      "asserts_test.cpp:[0-9]+: one input per finger .inputs.size.. == 2 doesn't hold.. The program that calls pincer");
 }
 
 TEST(Demand, IsAskedOnceAndSilentWhereItHolds) {
@@ -33,7 +33,7 @@ TEST(Demand, IsAskedOnceAndSilentWhereItHolds) {
 #ifdef PINCER_ASSERTS
 TEST(Assert, EndsTheProgramWithPlaceAndCondition) {
   const Vec3 n(0, 0, 1.1);
-  EXPECT_DEATH(PINCER_ASSERT(isUnit(n)), "asserts.cpp:[0-9]+: isUnit.n. doesn't hold. That is an error in pincer");
+  EXPECT_DEATH(PINCER_ASSERT(isUnit(n)), "asserts_test.cpp:[0-9]+: isUnit.n. doesn't hold. That is an error in pincer");
 }
 
 TEST(Assert, IsAskedOnceAndSilentWhereItHolds) {
