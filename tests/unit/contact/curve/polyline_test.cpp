@@ -1,8 +1,9 @@
+#include "pincer/contact/curve/polyline.h"
+
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "pincer/contact/curve/polyline.h"
 #include "pincer/contact/error.h"
 
 namespace pincer::contact {

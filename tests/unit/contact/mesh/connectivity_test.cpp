@@ -1,7 +1,8 @@
+#include "pincer/contact/mesh/connectivity.h"
+
 #include <gtest/gtest.h>
 
 #include "pincer/contact/generated_meshes.h"
-#include "pincer/contact/mesh/connectivity.h"
 #include "pincer/tests/support/constants.h"
 
 namespace pincer::contact {

@@ -1,10 +1,11 @@
 // A turned solid: its volume and surface against Pappus and Guldin, its outline's mistakes by name.
+#include "pincer/contact/mesh/lathe.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "pincer/contact/mesh/lathe.h"
 #include "pincer/contact/mesh_report.h"
 #include "pincer/tests/support/error_of.h"
 

@@ -1,12 +1,13 @@
 // Triangulation of polygons: n - 2 pieces, all turned the same way, that fill it
 // exactly; also of polygons that are hard to cut.
+#include "pincer/contact/mesh/polygon.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "pincer/contact/mesh/polygon.h"
 #include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {

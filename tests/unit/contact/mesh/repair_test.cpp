@@ -1,5 +1,3 @@
-#include "pincer/contact/mesh_repair.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "pincer/contact/generated_meshes.h"
 #include "pincer/contact/mesh_reader.h"
+#include "pincer/contact/mesh_repair.h"
 #include "pincer/contact/mesh_report.h"
 #include "pincer/tests/support/inside_out.h"
 

@@ -1,10 +1,9 @@
-#include "pincer/contact/mesh_report.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh_report.h"
 
 namespace pincer::contact {
 namespace {

@@ -1,11 +1,10 @@
-#include "pincer/contact/mesh/mesh_writer.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh/mesh_writer.h"
 #include "pincer/contact/mesh_reader.h"
 #include "pincer/tests/support/temporary_directory.h"
 

@@ -1,10 +1,11 @@
+#include "pincer/contact/mesh/round_edges.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
 #include "pincer/contact/generated_meshes.h"
-#include "pincer/contact/mesh/round_edges.h"
 #include "pincer/contact/mesh_report.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/contact/surface/surface_net.h"

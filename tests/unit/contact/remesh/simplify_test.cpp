@@ -1,10 +1,11 @@
+#include "pincer/contact/remesh/simplify.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "pincer/contact/generated_meshes.h"
 #include "pincer/contact/mesh_report.h"
-#include "pincer/contact/remesh/simplify.h"
 #include "pincer/tests/support/error_of.h"
 #include "pincer/tests/support/touch.h"
 

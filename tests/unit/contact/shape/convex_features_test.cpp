@@ -1,5 +1,7 @@
 // What the pair routines know of a convex solid: support points against the sampled
 // surface, facets, bends; hulls from points.
+#include "pincer/contact/shape/convex_features.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 #include "pincer/contact/error.h"
 #include "pincer/contact/polytope.h"
 #include "pincer/contact/shape/closed_forms.h"
-#include "pincer/contact/shape/convex_features.h"
 #include "pincer/tests/support/random_numbers.h"
 #include "pincer/tests/support/random_poses.h"
 #include "pincer/tests/support/sampled_surface.h"

@@ -1,4 +1,6 @@
 // Faces that stand apart over each other: what touchOnFaces says without a search is what the search says.
+#include "pincer/contact/shape/face_contact.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 
 #include "pincer/contact/pair_query.h"
 #include "pincer/contact/polytope.h"
-#include "pincer/contact/shape/face_contact.h"
 #include "pincer/contact/shape/facet_overlap.h"
 #include "pincer/contact/shape/separation.h"
 #include "pincer/tests/support/allocation_guard.h"

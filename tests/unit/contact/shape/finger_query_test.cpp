@@ -1,11 +1,12 @@
 // A fingertip sphere on every primitive: against the sampled oracle, and against what must hold for any closest point.
+#include "pincer/contact/finger_query.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
 #include <string>
 #include <vector>
 
-#include "pincer/contact/finger_query.h"
 #include "pincer/contact/pair_query.h"
 #include "pincer/contact/surface/patch_cache.h"
 #include "pincer/tests/support/constants.h"

@@ -1,5 +1,7 @@
 // Pairs of bodies: solids on a half-space and in a dish against the sampled oracle,
 // spheres against everything, order and frames.
+#include "pincer/contact/pair_query.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "pincer/contact/finger_query.h"
-#include "pincer/contact/pair_query.h"
 #include "pincer/contact/shape/convex_features.h"
 #include "pincer/tests/support/constants.h"
 #include "pincer/tests/support/effort.h"

@@ -1,5 +1,3 @@
-#include "pincer/contact/surface/surface_net.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 #include "pincer/contact/mesh_report.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/contact/surface/edge_cubic.h"
+#include "pincer/contact/surface/surface_net.h"
 #include "pincer/tests/support/constants.h"
 
 namespace pincer::contact {

@@ -1,6 +1,4 @@
 // The search for places that face a point, against a look at every triangle.
-#include "pincer/contact/surface/surface_search.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
@@ -8,6 +6,7 @@
 
 #include "pincer/contact/generated_meshes.h"
 #include "pincer/contact/surface/outward_float.h"
+#include "pincer/contact/surface/surface_search.h"
 #include "pincer/tests/support/constants.h"
 #include "pincer/tests/support/random_numbers.h"
 

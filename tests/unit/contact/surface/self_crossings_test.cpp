@@ -1,10 +1,11 @@
 // Triangles that pass through each other: against a try of all pairs, and against shapes whose crossings are known.
+#include "pincer/contact/surface/self_crossings.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 
 #include "pincer/contact/generated_meshes.h"
-#include "pincer/contact/surface/self_crossings.h"
 #include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {

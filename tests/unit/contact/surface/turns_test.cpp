@@ -1,10 +1,11 @@
 // Whose turn it is: each place's once per period, whatever the ticks are, and few at a time.
+#include "pincer/contact/surface/turns.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "pincer/contact/surface/turns.h"
 #include "pincer/tests/support/random_numbers.h"
 
 namespace pincer::contact {

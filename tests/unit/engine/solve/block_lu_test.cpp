@@ -1,12 +1,12 @@
 // The block-sparse factorisation against Eigen's dense one.
+#include "pincer/engine/solve/block_lu.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <random>
 #include <utility>
 #include <vector>
-
-#include "pincer/engine/solve/block_lu.h"
 
 namespace pincer::engine {
 namespace {

@@ -1,10 +1,11 @@
 // The Coulomb cone: its projection, the coupled projections of Alart and Curnier, the natural map.
+#include "pincer/engine/solve/cone.h"
+
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <limits>
 
-#include "pincer/engine/solve/cone.h"
 #include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {

@@ -1,11 +1,12 @@
 // Dense solvers in the caller's memory, and the Lorentz cone's algebra, against Eigen and against definitions.
+#include "pincer/engine/solve/linear.h"
+
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <Eigen/Dense>
 #include <vector>
 
-#include "pincer/engine/solve/linear.h"
 #include "pincer/engine/solve/lorentz.h"
 #include "pincer/tests/support/contact_problems.h"
 

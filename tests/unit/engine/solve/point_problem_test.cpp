@@ -1,11 +1,12 @@
 // A point between walls whose biases contradict each other.
+#include "pincer/engine/solve/point_problem.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 
 #include "pincer/engine/solve/cone.h"
-#include "pincer/engine/solve/point_problem.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/tests/support/contact_problems.h"
 

@@ -1,10 +1,11 @@
 // Accelerated sweeps.
+#include "pincer/engine/solve/sweeps.h"
+
 #include <gtest/gtest.h>
 
 #include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/local_contact.h"
 #include "pincer/engine/solve/residual.h"
-#include "pincer/engine/solve/sweeps.h"
 #include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {

@@ -1,10 +1,9 @@
 // Trees in a tick, without a world: orders, energies and what rests, against exact motions.
-#include "pincer/engine/tree/tree_course.h"
-
 #include <gtest/gtest.h>
 
 #include <numbers>
 
+#include "pincer/engine/tree/tree_course.h"
 #include "pincer/engine/tree/tree_pattern.h"
 #include "pincer/tasks/judge/exact/linkages.h"
 #include "pincer/tests/support/random_tree.h"

@@ -1,4 +1,6 @@
 // Many bodies: the tree finds what looking at every pair finds, and a heap behaves.
+#include "pincer/engine/world/broad_phase.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 
 #include "pincer/engine/state.h"
 #include "pincer/engine/step.h"
-#include "pincer/engine/world/broad_phase.h"
 #include "pincer/engine/world/scratch.h"
 #include "pincer/tests/support/allocation_guard.h"
 

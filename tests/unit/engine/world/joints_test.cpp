@@ -1,4 +1,6 @@
 // Joints: closed forms, momentum, drift.
+#include "pincer/engine/world/joints.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/one_freedom.h"
 #include "pincer/engine/step.h"
-#include "pincer/engine/world/joints.h"
 #include "pincer/tests/support/allocation_guard.h"
 #include "pincer/tests/support/constants.h"
 #include "pincer/tests/support/worlds.h"

@@ -1,10 +1,11 @@
 // The step: momentum, energy, landing, snapshots, and what it reports.
+#include "pincer/engine/step.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "pincer/engine/step.h"
 #include "pincer/tests/support/allocation_guard.h"
 #include "pincer/tests/support/constants.h"
 #include "pincer/tests/support/error_of.h"
