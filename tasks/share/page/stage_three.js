@@ -1,7 +1,7 @@
 // The scene in three dimensions, by three.js: each group of things is one instanced mesh; marks show faintly through what hides them.
 import {
   BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, GreaterDepth, HemisphereLight, InstancedMesh, Matrix4,
-  MeshStandardMaterial, PCFShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
+  MeshStandardMaterial, PCFShadowMap, PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
@@ -63,6 +63,31 @@ function meshesOf(look, geometry) {
   return meshes;
 }
 
+// A place, a turn and a size. What spins by a radian from one picture to the next keeps its size in between: entries of
+// matrices that are averaged would shrink it.
+class Placing {
+  matrix = new Matrix4();
+  p = new Vector3();
+  q = new Quaternion();
+  size = new Vector3();
+
+  read(columns, picture) {
+    const at = (k) => columns[k][picture];
+    this.matrix.set(at(0), at(3), at(6), at(9), at(1), at(4), at(7), at(10), at(2), at(5), at(8), at(11), 0, 0, 0, 1);
+    return this;
+  }
+
+  // The matrix of this one and `next`, `share` of the way between them. What has no size in some direction has no turn.
+  towards(next, share) {
+    if (this.matrix.determinant() === 0 || next.matrix.determinant() === 0) return this.matrix;
+    for (const placing of [this, next]) placing.matrix.decompose(placing.p, placing.q, placing.size);
+    this.p.lerp(next.p, share);
+    this.q.slerp(next.q, share);
+    this.size.lerp(next.size, share);
+    return this.matrix.compose(this.p, this.q, this.size);
+  }
+}
+
 export class Stage {
   constructor(canvas, page) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
@@ -78,7 +103,8 @@ export class Stage {
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     this.hidden = new Set();
-    this.matrix = new Matrix4();
+    this.here = new Placing();
+    this.next = new Placing();
   }
 
   // Puts up a recording's things, its light and its camera.
@@ -119,10 +145,10 @@ export class Stage {
       let count = 0;
       for (const columns of look.matrices) {
         if (Number.isNaN(columns[0][picture])) continue;
-        const next = share > 0 && !Number.isNaN(columns[0][picture + 1]) ? picture + 1 : picture;
-        const at = (k) => columns[k][picture] + share * (columns[k][next] - columns[k][picture]);
-        this.matrix.set(at(0), at(3), at(6), at(9), at(1), at(4), at(7), at(10), at(2), at(5), at(8), at(11), 0, 0, 0, 1);
-        for (const mesh of meshes) mesh.setMatrixAt(count, this.matrix);
+        const goesOn = share > 0 && !Number.isNaN(columns[0][picture + 1] ?? NaN);
+        const here = this.here.read(columns, picture);
+        const matrix = goesOn ? here.towards(this.next.read(columns, picture + 1), share) : here.matrix;
+        for (const mesh of meshes) mesh.setMatrixAt(count, matrix);
         ++count;
       }
       for (const mesh of meshes) {
