@@ -3,7 +3,7 @@
 //
 // The name is drawn at random and made with O_EXCL | O_NOFOLLOW: nothing that was planted there is followed
 // or overwritten, and two programs that write the same file don't share one part. The mode is the umask's.
-// What a killed program left of the same file is removed on the way: a part is locked while its program
+// Parts that a killed program left of the same file are removed on the way: a part is locked while its program
 // lives, so that one without a lock is nobody's.
 //
 // Errors: InputError with path, cause and remedy; the part is removed.

@@ -41,7 +41,7 @@ class MeshBuilder {
   void addVertex(const Vec3& p, std::int32_t place);  // in the file's unit, finite
   void addNormal(const Vec3& n, std::int32_t place);  // finite, of any length but zero
   // A face is begun, then gets its corners. Indices count from 0; `normal` -1 stands for none.
-  // Whether they exist is checked at the end.
+  // That they exist is checked at the end.
   void beginFace(std::int64_t corners, std::int32_t place);
   void addCorner(std::int64_t vertex, std::int64_t normal = -1);
   // Runs `read`, which reads corners of the face begun last. If that throws InputError and

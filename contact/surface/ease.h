@@ -56,7 +56,7 @@ class EasedContacts {
   EasedContacts(const TouchingBall& ball, std::array<SurfaceSlot, kMaxSurfaceContacts>& slots)
       : ball_(ball), slots_(slots) {}
 
-  // What the slots' contacts have become. Each slot in use is told of once, then settle(). Not converged is lost.
+  // Takes what the slots' contacts have become. Each slot in use is told of once, then settle(). Not converged is lost.
   void moveOn(int slot, const ShellContact& contact);
   void lose(int slot);
   void settle();

@@ -1,6 +1,6 @@
 // large_pages: asks the system to keep an array in pages of 2 MB instead of 4 KB. Where queries read it here and
 // there, as on a mesh of a million triangles, most of such a read was the walk through the page table to find it.
-// What the system grants changes no answer.
+// No answer depends on what the system grants.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -27,7 +27,7 @@
 // A body that has come to rest under impulses that are off by less than the tolerance drifts until they
 // aren't, then is put right, in a cycle without end. So after an answer that took iterations the next ones
 // are `strict`: a warm start must be exact to round-off, until it is clear that none comes (engine/world).
-// What rests then needs no iteration any more.
+// A body at rest then needs no iteration any more.
 //
 // Never throws, allocates or prints; deterministic.
 #pragma once

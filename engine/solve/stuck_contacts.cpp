@@ -150,7 +150,7 @@ class StuckAnswer {
     return error.residual <= enough && !isSqueezed(problem_, scratch_.weight, r_);
   }
 
-  // What is left of the velocities of contacts that hold, no impulses take away: they
+  // No impulses take away what is left of the velocities of contacts that hold: they
   // contradict each other by that, and give way.
   bool giveWay(SolveResult& result) {
     WorstResidual worst;

@@ -19,7 +19,7 @@ class Simulation {
   // The same with the fingers' devices where the caller says, one entry per finger, and pushes on bodies; where fingers
   // are rendered by a published method (SceneFinger::method), these do nothing.
   engine::StepReport tick(std::span<const grasp::FingerInput> fingers, const engine::AppliedForces& applied = {});
-  // What the fingers' trajectories say for the next tick.
+  // Targets of the fingers' trajectories for the next tick.
   std::span<const grasp::FingerInput> nextFingers();
 
   std::int64_t ticks() const { return ticks_; }                                   // done so far

@@ -72,7 +72,7 @@ engine::StepReport SceneCycle::sceneTick() {
   return simulation_.tick(simulation_.nextFingers(), applied);
 }
 
-// What happens after a pull isn't what the scene's file says.
+// After a pull the run isn't that of the scene's file any more.
 void SceneCycle::judge() {
   if (pull_ && pull_->wasUsed()) return;
   log_.observe(simulation_.ticks(), simulation_.time(), simulation_.moment());

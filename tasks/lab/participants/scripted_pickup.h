@@ -12,7 +12,7 @@
 // believed by what it is above a fingertip on the dish; open and begin again there.
 // A loss of force for longer than the reflex time means that the object got away (slipped out, dropped, or was
 // expelled): open, go down, grip 1.3 times as hard, a random step away from where the object is believed to be.
-// What is believed changes by readings, by the dish and by the first touch alone, never by a random step. The same
+// Beliefs change by readings, by the dish and by the first touch alone, never by a random step. The same
 // plan in every condition; no parameter knows an outcome. Where the tactors are of use as a cue of slip only (a
 // control), a tactor that runs during lift or hold makes the grip 1.3 times as hard. That is the "simple"
 // strategy. The "rational" one keeps a belief over the offset of its pinch and over the friction (place_belief.h):

@@ -31,7 +31,7 @@ std::string programOf(const SessionInfo& info);
 std::string versionText();
 
 // Differences between two runs of a program, a line each: "processor: X then, Y now".
-// What one of them doesn't know isn't there.
+// A fact that one of them doesn't know isn't there.
 std::vector<std::string> surroundingsThatDiffer(const SessionInfo& then, const SessionInfo& now);
 
 }  // namespace pincer::tasks
