@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "pincer/tasks/lab/sessions/session_hash.h"
 
@@ -10,11 +12,15 @@ namespace pincer::tasks {
 
 template <class Record>
 std::string differenceOf(const Record& stored, const Record& fresh) {
-  const auto a = comparable(stored), b = comparable(fresh);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i] != b[i]) return fmt::format("{} was {}, is {}", a[i].first, a[i].second, b[i].second);
-  }
-  return "";
+  std::vector<std::string> values;
+  forEachComparable(stored, [&](std::string_view, std::string_view value) { values.emplace_back(value); });
+  std::string difference;
+  std::size_t i = 0;
+  forEachComparable(fresh, [&](std::string_view name, std::string_view value) {
+    const std::string& was = values[i++];
+    if (difference.empty() && was != value) difference = fmt::format("{} was {}, is {}", name, was, value);
+  });
+  return difference;
 }
 
 }  // namespace pincer::tasks

@@ -7,10 +7,10 @@ namespace pincer::tasks {
 std::string sessionHash(const SessionReader& session) {
   Fingerprint hash;
   const auto add = [&](const auto& record) {
-    for (const auto& [name, value] : comparable(record)) {
+    forEachComparable(record, [&](std::string_view name, std::string_view value) {
       hash.add(name);
       hash.add(value);
-    }
+    });
   };
   for (const TrialRecord& trial : session.trials()) add(trial);
   for (const ResponseRecord& response : session.responses()) add(response);

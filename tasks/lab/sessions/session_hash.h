@@ -2,32 +2,37 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <iterator>
+#include <limits>
 #include <string>
+#include <string_view>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "pincer/tasks/run/session/columns.h"
 #include "pincer/tasks/run/session_store.h"
 
 namespace pincer::tasks {
 
-// Values of a record's columns, times that were measured left out.
-template <class Record>
-std::vector<std::pair<std::string, std::string>> comparable(const Record& record) {
-  std::vector<std::pair<std::string, std::string>> values;
+// Calls visit(name, value) with the texts of a record's columns, times that were measured left out. A session has
+// thousands of ticks of a hundred columns: all of them are written into the same two texts.
+template <class Record, class Visit>
+void forEachComparable(const Record& record, Visit&& visit) {
+  std::string column;
+  fmt::memory_buffer value;
   forEachColumn(record, [&]<class Field>(const ColumnName& name, const Field& field) {
-    const std::string column = name.text();
+    column.clear();
+    value.clear();
+    name.writeTo(column);
     if (column == "tick_us" || column == "tick_median_us" || column == "tick_p999_us") return;
     if constexpr (std::is_floating_point_v<Field>) {
-      values.emplace_back(column,
-                          // the store has one zero, -0 + 0 as well
-                          field != field ? std::string("nan") : fmt::format("{}", field + 0));
+      // NaNs are told apart by a sign that means nothing; the store has one zero, -0 + 0 as well
+      fmt::format_to(std::back_inserter(value), "{}",
+                     field != field ? std::numeric_limits<Field>::quiet_NaN() : field + 0);
     } else {
-      values.emplace_back(column, fmt::format("{}", field));
+      fmt::format_to(std::back_inserter(value), "{}", field);
     }
+    visit(std::string_view(column), std::string_view(value.data(), value.size()));
   });
-  return values;
 }
 
 // 16 hexadecimal digits (FNV-1a) over the finished trials, answers and kept ticks:

@@ -65,13 +65,17 @@ struct ColumnName {
       return columns::kAny;
     }
   }
-  std::string text() const {
-    std::string name;
+  // Into an empty text.
+  void writeTo(std::string& name) const {
     for (const std::string_view part : {finger, quantity, axis, unit}) {
       if (part.empty()) continue;
       if (!name.empty()) name += '_';
       name += part;
     }
+  }
+  std::string text() const {
+    std::string name;
+    writeTo(name);
     return name;
   }
 };
