@@ -26,7 +26,7 @@ class StuckSolve {
       : problem_(problem), movers_(movers), scratch_(scratch), r_(r), u_(u) {}
 
   bool holds(int i) const { return holds_[i]; }
-  // Those that push.
+  // Contacts that push.
   void holdWhatPushes() {
     for (int i = 0; i < problem_.contactCount(); ++i) holds_[i] = pushes(i);
   }
@@ -115,7 +115,7 @@ class StuckAnswer {
     return false;
   }
 
-  // From none: of all impulses with which everything sticks that touches the least.
+  // From none: of all impulses with which everything sticks, the least.
   bool least(SolveResult& result) {
     solve_.holdAll();
     startFromNone();

@@ -26,7 +26,7 @@ TEST_F(UsbPlugs, CyclesLeakNeitherDescriptorsNorMemory) {
   const PlugCycles result = plugCycles(bench, *host.arms()[0], cycles);
   EXPECT_EQ(result.done, cycles);
   EXPECT_LE(result.descriptors, 0);
-  // What umockdev itself keeps of every device that it ever showed; libusb's and ours would be kilobytes.
+  // umockdev itself keeps this much of every device that it ever showed; libusb's and ours would be kilobytes.
   EXPECT_LE(result.bytes, cycles < 100 ? 2048 : 256);
   EXPECT_EQ(host.arms().size(), 1u);
   RecordProperty("bytes_per_cycle", std::to_string(result.bytes));

@@ -102,7 +102,7 @@ TEST_F(Usb, AnArmTakesNoForceBeforeItIsArmed) {
   EXPECT_EQ(firmware->force(), Vec3(1, 0, 0));
 }
 
-// What a stopped computer, a hung program and a SIGSTOP have in common: no command comes.
+// A stopped computer, a hung program and a SIGSTOP have one thing in common: no command comes.
 TEST_F(Usb, AnArmThatHearsNothingGoesLimpWithinFiveMillisecondsAndStaysSo) {
   UsbBench bench;
   const auto firmware = bench.addArm("A1");
@@ -324,7 +324,7 @@ TEST_F(Usb, AnArmWhoseLinkageIsToldSaysHowItsJointsBearAForce) {
       << "angles from a place in whole nanometres";
 }
 
-// What was held up on its way is seen as old, though it arrives now.
+// A state that was held up on its way is seen as old, though it arrives now.
 TEST_F(Usb, AHeldUpStateIsAsOldAsItIs) {
   UsbBench bench;
   bench.addArm("A1");

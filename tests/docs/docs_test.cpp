@@ -49,7 +49,7 @@ std::vector<std::string> commandsOf(const std::string& page) {
   return commands;
 }
 
-// What the pages show takes minutes; the test runs less of the same.
+// Some commands of the pages take minutes; the test runs less of the same.
 struct Shorter {
   std::regex in_docs;
   std::string instead;

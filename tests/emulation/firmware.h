@@ -76,7 +76,7 @@ class ArmFirmware final : public Firmware {
   // That the arm tells of its joints from now on [N m].
   void tellPeakTorque(const Vec3& torque) { told_torque_ = torque; }
   Vec3 force() const { return force_; }  // being commanded to the motors [N]
-  // Whether `p_DF` is a position that was sent among the last ones.
+  // True if `p_DF` is a position that was sent among the last ones.
   bool hasSent(const Vec3& p_DF) const;
   usb::Signal takeSignal();
 

@@ -105,7 +105,7 @@ void RemotePort::complete(std::uint64_t key, const usbdevfs_urb& urb) {
   transfers_.erase(key);
 }
 
-// What came back goes out, and only then the pipe says so.
+// Answers go out, and only then the pipe says so.
 void RemotePort::flush() {
   if (connection_ < 0) return;
   bool any = false;

@@ -162,7 +162,7 @@ void UsbfsDevice::catchUp() {
   keepTime();
 }
 
-// What nobody could have looked at goes by in one step.
+// Time in which nobody could have looked goes by in one step.
 void UsbfsDevice::keepTime() {
   if (!time_ || gone_) return;
   constexpr std::chrono::milliseconds kStep(1), kMost(100);
