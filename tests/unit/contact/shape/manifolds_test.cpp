@@ -318,7 +318,7 @@ TEST(Manifolds, OnAFaceTheLastNormalIsAsGoodAsAllDirections) {
       const double best = tasks::convexGap(a.shape, X_BA, b.shape, Pose{}).gap;
       const bool boxes = std::holds_alternative<Box>(a.shape) && std::holds_alternative<Box>(b.shape);
       EXPECT_GE(mine, best - (boxes ? 1e-6 : 1e-9) * kStandingSize)
-          << a.name << " on " << b.name << " " << i;  // as in shape_pairs_judged.cpp
+          << a.name << " on " << b.name << " " << i;  // as in pairs_judged_test.cpp
     }
   });
 }

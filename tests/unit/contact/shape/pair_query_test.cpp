@@ -169,7 +169,7 @@ TEST(PairQuery, MovesWithTheWorld) {
   Random random;
   for (const Shape& a : allShapes()) {
     for (const Shape& b : allShapes()) {
-      if (isConvex(a) && isConvex(b) && !isSphere(a) && !isSphere(b)) continue;  // see shape_convex_pairs.cpp
+      if (isConvex(a) && isConvex(b) && !isSphere(a) && !isSphere(b)) continue;  // see convex_pairs_test.cpp
       const Pose X_WA = nearSupport(random);
       const Pose X_VW = random.pose();
       const PairPoints here = collide(a, X_WA, b, Pose{});
