@@ -82,6 +82,22 @@ TEST_F(UsbFalcons, AreWornByTwoFingersAtOnceEachByTheOneThatWasAskedFor) {
   }));
 }
 
+// `devices test` had never been seen with one: rest, the push through the gate, and what it says of a grip that is held.
+TEST_F(UsbFalcons, AreFitWhenTheirGripFollowsThePushAndNotWhenItIsHeld) {
+  std::vector<std::string> command = {"devices",        "test",    "FA",  "--devices", "falcon",     "--firmware",
+                                      options.firmware, "--force", "0.3", "--yes",     "--watchdog", "50"};
+  falcons[0]->falcon.free = true;
+  const AppResult fit = runPincer(command);
+  EXPECT_EQ(fit.exit_code, 0) << fit.out << fit.error;
+  EXPECT_TRUE(contains(fit.out, "Verdict: fit for a session")) << fit.out;
+  EXPECT_EQ(falcons[0]->falcon.torque0, 0);
+  falcons[0]->falcon.free = false;
+  const AppResult held = runPincer(command);
+  EXPECT_EQ(held.exit_code, tasks::kExitDevice) << held.out;
+  EXPECT_TRUE(contains(held.out, "moved it by 0.0 mm only")) << held.out;
+  EXPECT_EQ(falcons[0]->falcon.torque0, 0);
+}
+
 TEST_F(UsbFalcons, StandWhereTheirCalibrationFilesSay) {
   std::ofstream(folder / "a.json") << R"({"device": "FA", "values": {"base_x": 0.01}})";
   tasks::DeviceOptions chosen = options;

@@ -26,7 +26,10 @@ class FalconGadget final : public UsbGadget {
   std::string serialText() const override { return serial_; }
   void powerUp() override {}
   void received(std::span<const std::uint8_t> packet) override { falcon.write(packet); }
-  void advance(double) override { frames_ = 2; }
+  void advance(double dt) override {
+    falcon.advance(dt);
+    frames_ = 2;
+  }
   std::size_t take(Packet& packet) override {
     if (frames_ == 0) return 0;
     --frames_;

@@ -1,7 +1,10 @@
 // emulated_falcon: a Novint Falcon that isn't there: its FTDI chip, its loader, its firmware and its
-// three motors, as libnifalcon finds them.
+// three motors, as libnifalcon finds them. Its grip stays where it is, unless somebody lets it go:
+//
+//   I d2q/dt2 = tau - d dq/dt      of each motor's angle q, from one order's torque tau to the next
 #pragma once
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <deque>
@@ -45,9 +48,22 @@ class EmulatedFalcon {
     return answer.size() + 2;
   }
 
+  // A grip that is free moves, for `dt` [s]. Positive torque counts turn a motor towards smaller angles.
+  void advance(double dt) {
+    if (!free) return;
+    constexpr double kCountsPerTorque = 10000;         // [1/(N m)]
+    constexpr double kInertia = 1.2e-4, kDrag = 4e-4;  // 100 g of grip on three thighs of 60 mm [kg m^2, N m s]
+    for (int i = 0; i < 3; ++i) {
+      const double torque = -torques_[i] / kCountsPerTorque;
+      speeds_[i] += dt * (torque - kDrag * speeds_[i]) / kInertia;
+      turned_[i] += dt * speeds_[i];
+    }
+  }
+
   std::atomic<bool> spoils_image{false};
+  std::atomic<bool> free{false};
   std::atomic<int> torque0{0};    // of the first motor, as ordered [counts]
-  std::atomic<int> counts{-150};  // of all three encoders
+  std::atomic<int> counts{-150};  // of all three encoders, before the grip moved
 
  private:
   void say(std::vector<std::uint8_t> bytes) { answers_.push_back(std::move(bytes)); }
@@ -65,13 +81,25 @@ class EmulatedFalcon {
     std::copy_n(bytes.begin(), packet.size(), packet.begin());
     const auto order = devices::falcon::answerIn(packet);
     if (!order) return;
-    torque0 = order->counts[0];
+    torques_ = order->counts;
+    torque0 = torques_[0];
     const bool homing = (packet[13] - 'A') & 1;
-    devices::falcon::Packet answer = devices::falcon::packetOf({{counts, counts, counts}, false, 0});
+    devices::falcon::Packet answer = devices::falcon::packetOf({places(), false, 0});
     if (homing) answer[13] = static_cast<std::uint8_t>('A' + 0x70);
     say({answer.begin(), answer.end()});
   }
 
+  std::array<int, 3> places() const {
+    std::array<int, 3> all;
+    for (int i = 0; i < 3; ++i) {
+      const double start = devices::falcon::angleOf(counts);
+      all[i] = turned_[i] == 0 ? counts.load() : devices::falcon::countOf(start + turned_[i]);
+    }
+    return all;
+  }
+
+  std::array<int, 3> torques_{};
+  std::array<double, 3> speeds_{}, turned_{};  // [rad/s, rad]
   std::size_t image_size_, loaded_ = 0;
   int baud_ = 0;
   bool ready_ = false, runs_ = false;
