@@ -57,7 +57,8 @@ std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int fin
   const auto is_other = [&](const engine::Contact& c) {
     return c.a.kind != engine::SideKind::kPoint || c.a.index != finger;
   };
-  return {first, std::find_if(first, all.end(), is_other)};
+  const auto begin = static_cast<std::size_t>(first - all.begin());
+  return std::span(all).subspan(begin, static_cast<std::size_t>(std::find_if(first, all.end(), is_other) - first));
 }
 
 namespace {

@@ -56,23 +56,24 @@ class Chromium:
         text, self.rest = self.rest.split(b"\0", 1)
         return json.loads(text)
 
-    def picture(self, address, drawn):
-        """The PNG of a page once `drawn`, an expression of JavaScript, is true; and what its console said meanwhile."""
+    @contextlib.contextmanager
+    def page(self, address, drawn):
+        """A page, once `drawn`, an expression of JavaScript, is true."""
         target = self.ask("Target.createTarget", url="about:blank")["targetId"]
-        session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        page = Page(self, self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"])
         self.events.clear()
         for domain in ("Page", "Runtime", "Log"):
-            self.ask(f"{domain}.enable", session)
-        self.ask("Emulation.setDeviceMetricsOverride", session, **self.size)
-        self.ask("Page.navigate", session, url=address)
-        until = time.monotonic() + PATIENCE
-        while not self.ask("Runtime.evaluate", session, expression=drawn, returnByValue=True)["result"].get("value"):
-            assert time.monotonic() < until, f"{address}: nothing is drawn within {PATIENCE} s: {self.said()}"
-            time.sleep(0.1)
-        png = base64.b64decode(self.ask("Page.captureScreenshot", session, format="png")["data"])
-        said = self.said()
+            page.ask(f"{domain}.enable")
+        page.ask("Emulation.setDeviceMetricsOverride", **self.size)
+        page.ask("Page.navigate", url=address)
+        page.wait_for(drawn)
+        yield page
         self.ask("Target.closeTarget", targetId=target)
-        return png, said
+
+    def picture(self, address, drawn):
+        """The PNG of a page once it is drawn; and what its console said meanwhile."""
+        with self.page(address, drawn) as page:
+            return page.png(), self.said()
 
     def said(self):
         """Lines of the console, errors that nobody caught, and what the browser says of the page."""
@@ -86,3 +87,29 @@ class Chromium:
             elif event.get("method") == "Log.entryAdded":
                 lines.append(parameters["entry"]["text"])
         return [line for line in lines if "GPU stall due to ReadPixels" not in line]  # a remark on how the picture is taken
+
+
+class Page:
+    """A page that is open, of Chromium.page."""
+
+    def __init__(self, browser, session):
+        self.browser, self.session = browser, session
+
+    def ask(self, method, **parameters):
+        return self.browser.ask(method, self.session, **parameters)
+
+    def value(self, expression):
+        return self.ask("Runtime.evaluate", expression=expression, returnByValue=True)["result"].get("value")
+
+    def wait_for(self, expression):
+        until = time.monotonic() + PATIENCE
+        while not self.value(expression):
+            assert time.monotonic() < until, f"not within {PATIENCE} s: {expression}: {self.browser.said()}"
+            time.sleep(0.1)
+
+    def mouse(self, kind, x, y, held):
+        """kind: mousePressed, mouseMoved or mouseReleased, of the left button."""
+        self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", buttons=int(held), clickCount=1)
+
+    def png(self):
+        return base64.b64decode(self.ask("Page.captureScreenshot", format="png")["data"])

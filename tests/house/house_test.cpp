@@ -49,7 +49,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"engine", {"motion", "solve", "tree", "world"}},
     {"grasp", {"coupling", "tick", "baseline", "passivity", "quality"}},
     {"devices", {"arm", "cld", "usb", "falcon", "haply", "weart", "gate", "window", "emulate"}},
-    {"tasks", {"run", "lab", "judge", "view", "share", "python", "app"}},
+    {"tasks", {"play", "run", "lab", "judge", "view", "share", "python", "app"}},
     {"tasks/run", {"process", "measure", "files", "robot", "session", "scene", "rollout", "tick", "servo"}},
     {"tasks/lab", {"participants", "study", "report", "finger", "experiments", "findings", "sessions", "sweep"}},
     {"tasks/app", {"commands"}},
