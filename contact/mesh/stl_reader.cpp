@@ -194,7 +194,7 @@ void StlParser::expect(TextLines& lines, std::initializer_list<std::string_view>
 
 // A binary header may begin with "solid", but no text has a zero byte among its first ones.
 bool looksLikeText(std::string_view bytes) {
-  constexpr std::size_t kSolid = 5;
+  constexpr std::size_t kSolid = 5;  // letters of "solid"
   if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
   return isKeyword(bytes.substr(0, kSolid), "solid") && bytes.substr(0, 2 * kHead).find('\0') == std::string_view::npos;
