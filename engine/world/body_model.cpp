@@ -13,7 +13,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kLargest = std::numeric_limits<double>::max();  // stands for what isn't finite: out of any range
+constexpr double kLargest = std::numeric_limits<double>::max();  // no limit; or what isn't finite, out of any range
 constexpr double kFarthestShape = 1e3;                           // from its body's origin [m]
 
 void checkShape(const std::string& body, const ColliderSpec& shape) {
