@@ -15,8 +15,8 @@
 //   to bodies  what the contacts did on bodies
 //   numerical  the rest: what integrating in ticks dissipates (positive) or makes (negative)
 //
-//   f  force on the user [N];  x  place of the device [m];  e  proxy less device [m];  k, d,
-//                                                              m  coupling (engine/model.h)
+//   f  force on the user [N];  x  place of the device [m];  e  proxy less device [m]
+//   k, d, m  coupling (engine/model.h)
 #pragma once
 #include <span>
 #include <vector>

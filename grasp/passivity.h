@@ -9,8 +9,8 @@
 //   f_i =  f_i* - alpha_i v_i,   alpha_i = min(D_i / (h |v_i|^2), alpha_max)
 //                                where B < sum_i O_i, of fingers that move
 //
-//   E_i  energy that came in through finger i [J];  f_i force that its device held since the last tick
-//                                                   [N];  p_i, p_i' its place now and then [m]
+//   E_i  energy that came in through finger i [J];  f_i  force that its device held since the last tick [N]
+//   p_i, p_i'  its place now and then [m]
 //   v_i  (p_i - p_i') / h, unfiltered: a filter's lag would miss what buzzes [m/s];  m, b  the least mass and
 //        viscous friction of the arm at its tip [kg, N s/m]: half a tick's acceleration from the last velocity to
 //        the present one and half to the coming one's mean

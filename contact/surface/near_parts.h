@@ -1,10 +1,10 @@
 // near_parts: the patches that a finger may come to touch before it has moved far, kept for the ticks until it has.
 //
-//   approach = max( |C - x| - reach,  the way to where the patch's normal cone may face C
-//                                     )   over the places x of the patch's ball
+//   approach = max( |C - x| - reach,  the way to where the patch's normal cone may face C )
+//              over the places x of the patch's ball
 //
-//   C  finger's centre [m], reach  how far from it contacts are wanted [m];  a patch matters once
-//                                  the centre has moved by its approach [m]
+//   C  finger's centre [m], reach  how far from it contacts are wanted [m]
+//   A patch matters once the centre has moved by its approach [m].
 //
 // A list of neighbours as in molecular dynamics (L. Verlet, Phys. Rev. 159, 1967). The tree is asked again when
 // the centre has moved by the horizon; what faces along the followed contacts' normals within half of the angle

@@ -148,9 +148,9 @@ void Sweeps::sweep(bool backwards) {
 
 namespace {
 
-// Where  a g_z + b g_p + (a^2 zz + 2 a b zp + b^2 pp) / 2  is least, within bounds: where contacts are
-//                                                          redundant z and p may be any part of r that moves
-// nothing, and what is left of zz and pp is round-off. Nowhere if the sweep's own way would be taken back.
+// Where  a g_z + b g_p + (a^2 zz + 2 a b zp + b^2 pp) / 2  is least, within bounds. Where contacts are redundant
+// z and p may be any part of r that moves nothing, and what is left of zz and pp is round-off. Nowhere if the sweep's
+// own way would be taken back.
 struct LeastEnergy {
   double a = 0, b = 0;
 

@@ -60,8 +60,8 @@ Eigen::MatrixXd spanOf(const std::vector<Eigen::Matrix<double, 6, 4>>& columns, 
   return svd.matrixU().leftCols(rank);
 }
 
-// max t  subject to  sum_j l_j w_j - t d = 0,  sum_j l_j + s = 1,  l, t, s >= 0: a revised simplex with
-//                                                                  the basis solved anew per pivot.
+// max t  subject to  sum_j l_j w_j - t d = 0,  sum_j l_j + s = 1,  l, t, s >= 0:
+// a revised simplex with the basis solved anew per pivot.
 class RayProgramme {
  public:
   RayProgramme(const Eigen::VectorXd& d, double size)
