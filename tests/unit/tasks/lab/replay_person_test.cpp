@@ -33,7 +33,7 @@ ManipulationSessionOptions briefSession(int trials) {
   return options;
 }
 
-// What a person does at the window, by the clock of the trial: down beside the sphere, squeeze,
+// A person's actions at the window, by the clock of the trial: down beside the sphere, squeeze,
 // lift, wander about; let go near the end.
 void gesture(devices::MouseHand& hand, const HandScene& scene, std::int64_t tick) {
   if (tick == 2000) hand.move({0, 0, scene.cues.place_W.z() - scene.homes_W[0].z()});
