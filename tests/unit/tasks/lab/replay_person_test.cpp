@@ -13,6 +13,7 @@
 #include "pincer/tasks/run/session/database.h"
 #include "pincer/tasks/run/session/input_codec.h"
 #include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/pickup_session.h"
 #include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
@@ -21,14 +22,7 @@ namespace {
 const std::atomic<bool> kNobodyStops{false};
 
 ManipulationSessionOptions briefSession(int trials) {
-  ManipulationSessionOptions options;
-  options.study.participants = 1;
-  options.study.tasks = {HandTask::kPickup};
-  options.study.training.pickups = 0;
-  options.study.conditions = {PickupCondition::kCldForce};
-  options.study.pickup.frictions = {0.9};
-  options.study.pickup.repetitions = trials;
-  options.study.pickup.timeout = 4;
+  ManipulationSessionOptions options = tests::pickupSession(trials, 4);
   options.devices = "mouse";
   return options;
 }
