@@ -44,7 +44,7 @@ class WorstResidual {
   }
 
  private:
-  static constexpr double kCancellation = 1e-4;
+  static constexpr double kCancellation = 1e-4;  // of the largest response: what W r may cancel to
   double worst2_ = 0;
   double response_ = 0;
   double check_ = 0;
