@@ -141,6 +141,15 @@ TEST_P(DocsPage, KeepsItsLinesTo110Characters) {
   }
 }
 
+// Guides and explanations are true today; how it came about stands in the journal and the changelog.
+TEST_P(DocsPage, TellsNoHistory) {
+  if (GetParam().starts_with("docs/journal/") || GetParam() == "docs/changelog.md") return;
+  static const std::regex history(
+      "(used to be|formerly|previously|[Ss]ince then|it once |once was|turned out to|in the past)");
+  for (const std::string& words : matches(readFile(kSource / GetParam()), history))
+    ADD_FAILURE() << GetParam() << " tells history: " << words;
+}
+
 std::string pageTestName(const testing::TestParamInfo<std::string>& info) {
   std::string name = info.param;
   std::replace_if(
