@@ -23,8 +23,8 @@ TriangleMesh uvSphere(double radius, int rings, int segments);
 // Half axes `half` [m]: (x/a)^2 + (y/b)^2 + (z/c)^2 = 1. Triangles as geodesicSphere's.
 TriangleMesh ellipsoid(const Vec3& half, int n);
 
-// |x| = radius (1 + amplitude f(x / |x|)),  f(d) = sin(waves d_x) sin(waves d_y + 1) sin(waves d_z +
-//                                           2): hills and hollows without a symmetry.
+// |x| = radius (1 + amplitude f(x / |x|)),  f(d) = sin(waves d_x) sin(waves d_y + 1) sin(waves d_z + 2):
+// hills and hollows without a symmetry.
 //   amplitude  [-], 0 <= amplitude < 1
 // Triangles as geodesicSphere's.
 TriangleMesh bumpySphere(double radius, double amplitude, double waves, int n);

@@ -1,8 +1,8 @@
 // mesh_report: what a triangle mesh is and what is wrong with it, in numbers and in sentences
 // for a person (`pincer mesh info`, `check`).
 //
-//   V = sum over triangles of p0 . (p1 x p2) / 6  [m^3], negative when the triangles face inwards;  A
-//                                                 = sum |(p1 - p0) x (p2 - p0)| / 2  [m^2]
+//   V = sum over triangles of p0 . (p1 x p2) / 6  [m^3], negative when the triangles face inwards
+//   A = sum over triangles of |(p1 - p0) x (p2 - p0)| / 2  [m^2]
 //
 // A closed mesh has two triangles at every edge, running along it in opposite directions. Every finding has a short
 // name that stays the same over versions; docs/meshes.md explains each.

@@ -1,7 +1,7 @@
 // polytope: the convex hull of points, with its faces, edges and corners.
 //
-//   { p : n_f . p <= d_f for every face f },   n_f unit normal out of the solid [-], d_f
-//                                              distance of the face's plane from the origin [m]
+//   { p : n_f . p <= d_f for every face f }
+//   n_f  unit normal out of the solid [-], d_f  distance of the face's plane from the origin [m]
 //
 // Facets that lie in one plane to within kFlat of the solid's size are one face, and corners within that of an edge or
 // face are none: a cube given by points of its surface has six faces and eight corners. Frame: the points'.

@@ -2,10 +2,10 @@
 //
 //   p_BC = S(u, v) + h N(u, v),   phi = h - r
 //
-//   S  cubic patch over each triangle [m], N  its quadratic shading normal, both continuous
-//                                             across smooth edges to round-off; frame B
-//   p_BC  fingertip centre, h  its signed height over the surface [m], r  fingertip radius [m], phi  gap
-//                                                                         [m], negative when they overlap
+//   S  cubic patch over each triangle [m], N  its quadratic shading normal, both continuous across smooth edges to
+//      round-off; frame B
+//   p_BC  fingertip centre, h  its signed height over the surface [m], r  fingertip radius [m]
+//   phi   gap [m], negative when they overlap
 // On a convex crease no surface point fulfils the equation: there the contact is the point of the edge curve (or the
 // vertex) and the normal points from it to the fingertip's centre.
 //

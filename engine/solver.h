@@ -18,7 +18,7 @@ using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign
 
 struct SolverOptions {
   double tolerance = 1e-10;  // on the residual, see solve/residual.h [-]; range [1e-14, 1e-2]
-  // The dial between time and error: by how much the contact velocities of twelve contacts and more may
+  // The dial between time and error: by how much the contact velocities of more than sixty contacts may
   // be off while they move [m/s], 0 .. 1; 0: to the tolerance. Fewer contacts, and what is about to
   // rest, are always solved to the tolerance.
   double accuracy = 1e-6;

@@ -2,8 +2,8 @@
 // (docs/engine.md; its stages: engine/world/stages.h).
 //
 //   auto scratch = makeScratch(model);
-//   StepReport report = step(model, state, *scratch, inputs);      report.status is kStepOk,
-//                                                                  contactAt(*scratch, k) says what touched
+//   StepReport report = step(model, state, *scratch, inputs);
+//   report.status is kStepOk,  contactAt(*scratch, k) says what touched
 //
 // Where bodies hit each other the tick is cut: up to the hit, the hit, which takes no time, and what is left. With
 // options.position_tolerance it is cut into as many equal parts as that needs.

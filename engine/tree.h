@@ -1,7 +1,7 @@
 // tree: joints with limits, springs, drives and dry friction, and the trees of bodies that hang together by them.
 //
-//   l = sum of c_j q_j        F = f + k (target - l) + d (target' - l'),   lower_force <= F <= upper_force
-//                                                                          (a drive on one joint or a tendon)
+//   l = sum of c_j q_j
+//   F = f + k (target - l) + d (target' - l'),   lower_force <= F <= upper_force   (a drive on one joint or a tendon)
 //
 //   q_j  a joint's coordinate: what a has turned about J's z axis [rad], or gone along it [m],
 //        past b; 0 where J of a and J of b coincide

@@ -3,20 +3,20 @@
 //   came in (held)  =  late + (stored + damped + slipped + to bodies + numerical)
 //                      per finger, since the ledger was opened
 //
-//   held       -sum f_n-1 . (x_n - x_n-1)   through the finger's port: the force that the
-//                                           device held, over the way that it went [J]
-//   late       -sum (f_n-1 - f_n) . (x_n - x_n-1)   part of it that exists only because a force
-//                                                   is held for a tick and comes a tick late:
-//              negative means energy made by sampling, the one that virtual walls are known for (J. E. Colgate, G. G.
-//              Schenkel, J. Robotic Systems 14 (1997) 37-47)
+//   held       -sum f_n-1 . (x_n - x_n-1)
+//              through the finger's port: the force that the device held, over the way that it went [J]
+//   late       -sum (f_n-1 - f_n) . (x_n - x_n-1)
+//              part of it that exists only because a force is held for a tick and comes a tick late: negative means
+//              energy made by sampling, the one that virtual walls are known for (J. E. Colgate, G. G. Schenkel,
+//              J. Robotic Systems 14 (1997) 37-47)
 //   stored     1/2 k e^2 + 1/2 m v^2, in the coupling's spring and the proxy, now less at the start
 //   damped     by the coupling's damper, d |de|^2 / h
 //   slipped    by friction between finger and bodies
 //   to bodies  what the contacts did on bodies
 //   numerical  the rest: what integrating in ticks dissipates (positive) or makes (negative)
 //
-//   f  force on the user [N];  x  place of the device [m];  e  proxy less device [m];  k, d,
-//                                                              m  coupling (engine/model.h)
+//   f  force on the user [N];  x  place of the device [m];  e  proxy less device [m]
+//   k, d, m  coupling (engine/model.h)
 #pragma once
 #include <span>
 #include <vector>

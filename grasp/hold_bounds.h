@@ -8,8 +8,8 @@
 //          [N/m, N s/m];  T  time between two forces [s]
 //   theta  lead of the pose in ticks [-]: 0 zero-order hold, > 0 extrapolated ahead
 //          (first-order hold), < 0 late by so much; -1 .. 1
-//   m, b   the arm's mass and viscous friction at its tip [kg, N s/m];  k_h  stiffness of the hand, its
-//                                                                       damping counts with b [N/m]
+//   m, b   the arm's mass and viscous friction at its tip [kg, N s/m]
+//   k_h    stiffness of the hand [N/m], its damping counts with b
 // Passive is more than stable: it holds whatever the hand and the object do. theta = 0 is the published bound;
 // with theta it follows from the paper's condition, b > T / (2 (1 - cos wT)) Re[(1 - exp(-jwT)) H(exp(jwT))]
 // for 0 <= w <= pi/T, with H = K (1 + theta (1 - 1/z)) + B (1 - 1/z) / T: Re[...] / (1 - cos wT) = K - 2

@@ -1,16 +1,16 @@
 // passivity: fingers never give their users more energy than came in. Observers that watch, a controller that brakes.
 //
-//   E_i <- E_i - f_i . (p_i - p_i')                   came in through finger i while its device
-//                                                     held f_i, exactly, for a held force
+//   E_i <- E_i - f_i . (p_i - p_i')
+//       came in through finger i while its device held f_i, exactly, for a held force
 //   B   <- min(B + sum_i (b |p_i - p_i'|^2 / h - f_i . (p_i - p_i')), S + R)
 //       balance of all fingers: what may still flow out
-//   O_i =  h f_i* . (v_i + h f_i / 2m) + |h f_i*|^2 / 2m     would flow out in the coming
-//                                                            tick, with the wanted force f_i*
+//   O_i =  h f_i* . (v_i + h f_i / 2m) + |h f_i*|^2 / 2m
+//       would flow out in the coming tick, with the wanted force f_i*
 //   f_i =  f_i* - alpha_i v_i,   alpha_i = min(D_i / (h |v_i|^2), alpha_max)
-//                                where B < sum_i O_i, of fingers that move
+//       where B < sum_i O_i, of fingers that move
 //
-//   E_i  energy that came in through finger i [J];  f_i force that its device held since the last tick
-//                                                   [N];  p_i, p_i' its place now and then [m]
+//   E_i  energy that came in through finger i [J];  f_i  force that its device held since the last tick [N]
+//   p_i, p_i'  its place now and then [m]
 //   v_i  (p_i - p_i') / h, unfiltered: a filter's lag would miss what buzzes [m/s];  m, b  the least mass and
 //        viscous friction of the arm at its tip [kg, N s/m]: half a tick's acceleration from the last velocity to
 //        the present one and half to the coming one's mean

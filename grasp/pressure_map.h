@@ -1,11 +1,11 @@
 // pressure_map: the forces on a finger's skin, spread over a grid of taxels, as tactile
 // sensors and displays with many pins have it.
 //
-//   sum_k f_k = f,   sum_k x_k n_k = x n,   sum_k (x_k t_ky - y_k t_kx) = tau + x t_y -
-//                                           y t_x      to round-off, for each contact
+//   sum_k f_k = f,   sum_k x_k n_k = x n,   sum_k (x_k t_ky - y_k t_kx) = tau + x t_y - y t_x
+//   to round-off, for each contact
 //
-//   x_k = (x_k, y_k)  place of taxel k over the skin from the pad's centre, (distal, radial)
-//                     [m];  x  that of the contact (pad_place.h)
+//   x_k = (x_k, y_k)  place of taxel k over the skin from the pad's centre, (distal, radial) [m]
+//   x                 that of the contact (pad_place.h)
 //   f_k = (t_kx, t_ky, n_k), f  force on the finger: along the skin (distal, radial) and into it [N]
 //   tau  moment of the contact's patch about the skin's outward normal [N m]
 //

@@ -10,8 +10,8 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kSharpestBend = 90 * kDegree;  // beyond, the local centre of unequal segments leaves the inner side
-constexpr double kSharpestCorner = 179 * kDegree;
+constexpr double kSharpestBend = 90 * kDegree;     // beyond, the local centre of unequal segments leaves the inner side
+constexpr double kSharpestCorner = 179 * kDegree;  // [rad]: beyond, it is folded onto itself
 // [rad] of a bend, below which O counts as infinitely far: t changes by less than that
 constexpr double kLeastBend = 1e-12;
 constexpr double kBeyondGates = 1e-3;  // of t: so that a solution on a gate isn't at the end of the bracket

@@ -7,8 +7,8 @@
 //
 //   F = C - h N(t),   t = alpha(F) / beta
 //
-//   t        Bezier parameter, 0 at M0, 1 at M1 [-];  tangent line through (1-t) M0 + t P and
-//                                                     (1-t) P + t M1, unit normal N (outward)
+//   t        Bezier parameter, 0 at M0, 1 at M1 [-]
+//            tangent line through (1-t) M0 + t P and (1-t) P + t M1, unit normal N (outward)
 //   F, h     contact point on that line [m] and height of C over it [m]
 //   alpha    angle of F about the local centre O, from M0 on [rad];  beta  that of M1: the turn of the path at P
 //   O        where the perpendicular bisectors of the two segments meet [m]; at infinity

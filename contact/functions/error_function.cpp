@@ -1,11 +1,11 @@
 // erfc.
 //
 //   |x| < 1/4     1 - erf x, erf by its power series
-//   x < 4         e^(-x^2) w(x),  w = e^(x^2) erfc x  by its Taylor series about the nearest
-//                                                     eighth:  w' = 2 x w - 2/sqrt(pi), hence
+//   x < 4         e^(-x^2) w(x),  w = e^(x^2) erfc x  by its Taylor series about the nearest eighth:
+//                 w' = 2 x w - 2/sqrt(pi), hence
 //                 a_1 = 2 c a_0 - 2/sqrt(pi),   a_(n+1) = (2 c a_n + 2 a_(n-1)) / (n + 1)
-//   beyond        the same with Laplace's continued fraction,  sqrt(pi) w = 1 / (x + (1/2) / (x
-//                                                              + (2/2) / (x + (3/2) / (x + ...
+//   beyond        the same with Laplace's continued fraction,
+//                 sqrt(pi) w = 1 / (x + (1/2) / (x + (2/2) / (x + (3/2) / (x + ...
 // Source: NIST Digital Library of Mathematical Functions, 7.6.1, 7.6.2, 7.9.2.
 #include <array>
 

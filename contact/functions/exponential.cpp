@@ -14,8 +14,8 @@
 namespace pincer::math {
 namespace {
 
-constexpr int kParts = 64;
-constexpr double kPartsOverLn2 = 0x1.71547652b82fep+6;
+constexpr int kParts = 64;                              // of a power of two: entries of the table
+constexpr double kPartsOverLn2 = 0x1.71547652b82fep+6;  // 64 / ln 2
 // ln 2 / 64; times k exact: 34 and 17 bits
 constexpr double kPart = 0x1.62e42fef8p-7, kPartRest = 0x1.1cf79abc9e3b4p-42;
 constexpr double kOverflows = 710, kVanishes = -746;  // e^x beyond the largest double, below half the smallest

@@ -130,7 +130,7 @@ double log2(double x) {
 double log10(double x) { return isOrdinary(x) ? rounded(preciseOf(partsOf(x)) * kOverLn10) : logarithmOfSpecial(x); }
 
 double log1p(double x) {
-  constexpr double kAboutOne = 0x1p-8;
+  constexpr double kAboutOne = 0x1p-8;  // |x|: up to here the series about one alone
   if (magnitude(x) < 0x1p-54) return x;
   if (magnitude(x) < kAboutOne) return valueOf({0, {x, 0}, 0});
   if (!(x > -1 && x < 0x1p54)) return log(1 + x);

@@ -15,7 +15,7 @@
 namespace pincer {
 namespace {
 
-constexpr std::size_t kBlock = std::size_t{1} << 18;
+constexpr std::size_t kBlock = std::size_t{1} << 18;  // bytes of a read
 
 std::string reasonOf(int error) {
   if (error == ENOENT || error == ENOTDIR) return "there is no such file. Check the path.";

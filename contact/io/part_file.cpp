@@ -17,7 +17,7 @@
 namespace pincer {
 namespace {
 
-constexpr std::size_t kDigits = 16;
+constexpr std::size_t kDigits = 16;  // of a random number of 64 bits
 // of the file's own name that the part's repeats: names may have 255 bytes in all
 constexpr std::size_t kLongestName = 200;
 constexpr std::string_view kEnding = ".part";

@@ -1,7 +1,7 @@
 // cone_tips: vertices that are the tip of a round cone: no edge there is sharp, yet the surface has no tangent plane.
 //
-//   rulings g_i of a cone of half angle alpha about a:  g_i . a = -cos(alpha);   found by least
-//                                                       squares:  g_i . y = -1,  a = y / |y|
+//   rulings g_i of a cone of half angle alpha about a:  g_i . a = -cos(alpha)
+//   found by least squares:  g_i . y = -1,  a = y / |y|
 //   the ball of radius rho in it:  centre c = p - rho a / sin(alpha),  touched on ruling i at  p + rho g_i / tan(alpha)
 //
 //   p  tip [m], g_i  unit direction to neighbour i [-]; frame B

@@ -1,7 +1,7 @@
 // connectivity: which triangle lies across each edge, which edges are sharp, and the normal at each corner.
 //
-//   n_corner = normalised sum over the corner's fan of  (e_i x f_i / |e_i||f_i|) (|e_i||f_i|)^p,
-//                                                       e_i, f_i  a triangle's two edges there [m]
+//   n_corner = normalised sum over the corner's fan of  (e_i x f_i / |e_i||f_i|) (|e_i||f_i|)^p
+//   e_i, f_i  a triangle's two edges there [m]
 //   p = -1 where the fan's edges are of about one length (up to 2 : 1), +1 where they
 //   aren't (from 6 : 1), between in the logarithm
 //

@@ -23,7 +23,7 @@ using Loop = std::vector<std::int32_t>;
 // Rims of holes, so directed that a triangle along them faces as its neighbours do. Rims that
 // touch themselves or others are left out.
 std::vector<Loop> findLoops(const std::vector<HalfEdge>& half_edges) {
-  constexpr std::int32_t kSeveral = -1;
+  constexpr std::int32_t kSeveral = -1;  // mark of a vertex that several rims share
   std::map<std::int32_t, std::int32_t> next;
   forEachEdge(half_edges, [&](auto edge) {
     if (!isBoundary(edge)) return;

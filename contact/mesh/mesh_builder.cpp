@@ -20,7 +20,7 @@ std::string textOf(const Vec3& p) { return fmt::format("({:g}, {:g}, {:g})", p.x
 // Unit normals keep their bits, so that what was written from a mesh reads back the same.
 // Divided first so that no square overflows.
 Vec3 unit(const Vec3& n, double largest) {
-  constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();
+  constexpr double kRoundOff = 8 * std::numeric_limits<double>::epsilon();  // of a sum of three squares
   if (largest <= 1 && std::abs(n.squaredNorm() - 1) < kRoundOff) return n;
   return (n / largest).normalized();
 }

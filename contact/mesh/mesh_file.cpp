@@ -34,7 +34,7 @@ void MeshFile::report(std::size_t byte) {
 }
 
 std::string inQuotes(std::string_view word) {
-  constexpr std::size_t kLongest = 40;
+  constexpr std::size_t kLongest = 40;  // characters that a message quotes
   std::string text(word.substr(0, kLongest));
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c > 0x7e; }, '?');

@@ -10,6 +10,7 @@
 #include "pincer/contact/mesh/mesh_file.h"
 #include "pincer/contact/mesh/obj_reader.h"
 #include "pincer/contact/mesh/off_reader.h"
+#include "pincer/contact/mesh/stl_layout.h"
 
 namespace pincer::contact {
 
@@ -65,9 +66,9 @@ std::optional<MeshFormat> formatOfBytes(std::string_view bytes) {
 }
 
 bool isBinaryStl(std::string_view bytes) {
-  constexpr std::size_t kHeader = 80, kHead = 84, kFacet = 50;
-  return bytes.size() >= kHead && bytes.size() == kHead + kFacet * static_cast<std::size_t>(readNumber<std::uint32_t>(
-                                                                       bytes.substr(kHeader), ByteOrder::little));
+  return bytes.size() >= kStlHead &&
+         bytes.size() == kStlHead + kStlFacet * static_cast<std::size_t>(readNumber<std::uint32_t>(
+                                                    bytes.substr(kStlHeader), ByteOrder::little));
 }
 
 double metresPerUnit(const std::string& unit) {

@@ -1,8 +1,8 @@
 // mesh_pieces: the pieces of a mesh, which of them enclose a volume, which way they face, and which lie inside others.
 //
 //   V = sum over triangles of p0 . (p1 x p2) / 6  [m^3], negative when the triangles face inwards
-//   w(p) = sum over triangles of Omega(p) / (4 pi),  Omega the solid angle under which p sees
-//                                                    the triangle; |w| = 1 inside, 0 outside
+//   w(p) = sum over triangles of Omega(p) / (4 pi);  |w| = 1 inside, 0 outside
+//   Omega  the solid angle under which p sees the triangle
 //
 // A piece inside an odd number of others that faces inwards is a cavity, and sound. Source of Omega: A. van Oosterom,
 // J. Strackee, IEEE Trans. Biomed. Eng. 30(2), 1983, eq. 8.

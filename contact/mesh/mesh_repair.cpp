@@ -10,7 +10,7 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr int kMostHoleEdges = 1000;
+constexpr int kMostHoleEdges = 1000;  // ear clipping is quadratic
 
 void requireInRange(const TriangleMesh& mesh, const RepairOptions& options) {
   if (!(options.weld >= 0 && std::isfinite(options.weld))) {

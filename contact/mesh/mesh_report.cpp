@@ -75,7 +75,7 @@ Occurrences<std::int32_t> findDuplicates(const TriangleMesh& mesh, const std::ve
 }
 
 TriangleQuality judgeTriangles(const TriangleMesh& mesh, const std::vector<HalfEdge>& half_edges) {
-  constexpr double kNeedle = 1e-3;
+  constexpr double kNeedle = 1e-3;  // slenderness [-]: below it is reported
   TriangleQuality quality;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle& t = mesh.triangles[i];

@@ -10,6 +10,7 @@
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/atomic_file.h"
 #include "pincer/contact/mesh/mesh_file.h"
+#include "pincer/contact/mesh/stl_layout.h"
 
 namespace pincer::contact {
 
@@ -133,9 +134,8 @@ std::string MeshWriter::stlText() const {
 }
 
 std::string MeshWriter::stlBinary() const {
-  constexpr std::size_t kHeader = 80;
   std::string out = "binary STL, written by pincer";
-  out.resize(kHeader, '\0');
+  out.resize(kStlHeader, '\0');
   addBytes(out, static_cast<std::uint32_t>(mesh_.triangles.size()));
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const std::array<Vec3, 3> p = corners(t);

@@ -112,7 +112,7 @@ void ObjParser::readTexture() {
 void ObjParser::readSmoothingGroup() {
   const auto& words = lines_.words();
   if (words.size() != 2) lines_.fail("a smoothing group is written \"s\" and its number, or \"s off\".");
-  constexpr std::int64_t kLast = 0x7fffffff;
+  constexpr std::int64_t kLast = 0x7fffffff;  // that a 32-bit number holds
   const std::int64_t group = words[1] == "off" ? 0 : lines_.integer(words[1], "smoothing group");
   if (group < 0 || group > kLast)
     lines_.fail(fmt::format("smoothing group {} is out of range 1 .. {} (0 or \"off\": none).", group, kLast));

@@ -75,7 +75,7 @@ class EarClipper {
   }
 
  private:
-  static constexpr int kRounds = 16;
+  static constexpr int kRounds = 16;  // of looks at all corners
 
   int size() const { return static_cast<int>(p_.size()); }
 

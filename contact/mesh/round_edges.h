@@ -1,10 +1,10 @@
 // round_edges: a mesh whose sharp edges are rounded by a ball of radius rho that rolls
 // along them, as extra triangles with normals.
 //
-//   ball at vertex p:  n_i . (c - p) = -s rho  for the normals n_i of all faces that meet
-//                                              there,   face i moves to  c + s rho n_i
-//   two faces:         c = p - s rho (nA + nB) / (1 + nA . nB);   tip of a cone of half angle alpha
-//                                                                 about a:  c = p - s rho a / sin(alpha)
+//   ball at vertex p:  n_i . (c - p) = -s rho  for the normals n_i of all faces that meet there
+//                      face i moves to  c + s rho n_i
+//   two faces:         c = p - s rho (nA + nB) / (1 + nA . nB)
+//   tip of a cone of half angle alpha about a:  c = p - s rho a / sin(alpha)
 //
 //   rho  radius [m];  s = +1 where the edges are convex, -1 where they are concave;  c  the ball's centre [m], frame B
 // A crease becomes a strip of an arc that is tangent to both faces, a corner a patch of the ball, the tip of a cone a

@@ -8,14 +8,12 @@
 #include <cmath>
 
 #include "pincer/contact/mesh/mesh_builder.h"
+#include "pincer/contact/mesh/stl_layout.h"
 #include "pincer/contact/mesh/text_lines.h"
 
 namespace pincer::contact {
 
 namespace {
-
-constexpr std::size_t kHead = 84;   // bytes: 80 of header, 4 of count
-constexpr std::size_t kFacet = 50;  // bytes: normal, three corners, two of attributes
 
 std::uint64_t mixed(std::uint64_t z) {  // SplitMix64's finaliser
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -93,10 +91,10 @@ void StlParser::addCorner(const Vec3& p, std::int32_t place) {
 TriangleMesh StlParser::parseBinary() {
   file_.countPlacesIn(Places::bytes);
   const std::size_t count = readCount();
-  builder_.reserveFaces(count, kHead - 4);
+  builder_.reserveFaces(count, kStlHeader);
   positions_ = Positions(count / 2);  // a closed surface has half as many vertices as triangles
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t begin = kHead + kFacet * i;
+    const std::size_t begin = kStlHead + kStlFacet * i;
     file_.reached(begin);
     builder_.beginFace(3, static_cast<std::int32_t>(begin));
     for (std::size_t corner = 0; corner < 3; ++corner) readBinaryCorner(begin + 12 + 12 * corner);
@@ -106,15 +104,15 @@ TriangleMesh StlParser::parseBinary() {
 
 std::size_t StlParser::readCount() const {
   const std::size_t size = file_.bytes().size();
-  if (size < kHead) {
+  if (size < kStlHead) {
     file_.fail(
         fmt::format("the file has {} bytes; a binary STL file has at least {}, and an ascii one begins with \"solid\". "
                     "It is cut off or isn't STL; export it again.",
-                    size, kHead));
+                    size, kStlHead));
   }
   const auto count =
-      static_cast<std::size_t>(readNumber<std::uint32_t>(file_.bytes().substr(kHead - 4), ByteOrder::little));
-  const std::size_t expected = kHead + kFacet * count;
+      static_cast<std::size_t>(readNumber<std::uint32_t>(file_.bytes().substr(kStlHeader), ByteOrder::little));
+  const std::size_t expected = kStlHead + kStlFacet * count;
   if (size == expected) return count;
   file_.fail(fmt::format(
       "the header announces {} triangles, which take {} bytes, but the file has {}. {}", count, expected, size,
@@ -194,10 +192,11 @@ void StlParser::expect(TextLines& lines, std::initializer_list<std::string_view>
 
 // A binary header may begin with "solid", but no text has a zero byte among its first ones.
 bool looksLikeText(std::string_view bytes) {
-  constexpr std::size_t kSolid = 5;
+  constexpr std::size_t kSolid = 5;  // letters of "solid"
   if (bytes.starts_with(kByteOrderMark)) bytes.remove_prefix(kByteOrderMark.size());
   bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
-  return isKeyword(bytes.substr(0, kSolid), "solid") && bytes.substr(0, 2 * kHead).find('\0') == std::string_view::npos;
+  return isKeyword(bytes.substr(0, kSolid), "solid") &&
+         bytes.substr(0, 2 * kStlHead).find('\0') == std::string_view::npos;
 }
 
 }  // namespace

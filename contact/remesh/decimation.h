@@ -1,7 +1,7 @@
 // decimation: a mesh that loses one vertex after the other, the one that changes its shape least first.
 //
-//   cost of moving vertex 0 onto its neighbour 1 = p_1^T Q_0 p_1,   Q_0 = sum over planes of A
-//                                                                   (n, -n.q)(n, -n.q)^T   [m^4]
+//   cost of moving vertex 0 onto its neighbour 1 = p_1^T Q_0 p_1
+//   Q_0 = sum over planes of A (n, -n.q)(n, -n.q)^T   [m^4]
 //
 //   planes  of the facets that were around vertex 0 and around all that has moved onto it; n unit
 //           normal, q a point of it, A its area [m^2]

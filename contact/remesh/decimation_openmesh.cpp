@@ -294,7 +294,7 @@ class MoveRules : public OpenMesh::Decimater::ModBaseT<Kernel> {
   }
 
   void rehouse(const Move& move) {
-    constexpr std::size_t kMostGone = 8;
+    constexpr std::size_t kMostGone = 8;  // vertices per face at which the error is measured
     foresee(move, outcome_);
     for (const auto h : mesh().voh_range(move.v0)) {
       if (!mesh().is_boundary(h)) gone_[indexOf(mesh().face_handle(h))].clear();

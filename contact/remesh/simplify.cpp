@@ -16,7 +16,7 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr std::size_t kMostProbes = 20000;
+constexpr std::size_t kMostProbes = 20000;  // over all of the mesh
 
 // Small balls that touch a smooth surface from outside.
 class Probes {
@@ -58,7 +58,7 @@ class Probes {
 
   // Leaves out what touches another place first, as in a hollow: which one it touches may change without an error.
   void thinOut(const SmoothMesh& surface) {
-    constexpr double kTouches = 1e-6;
+    constexpr double kTouches = 1e-6;  // of the radius: further away another place is nearer
     const std::size_t stride = (centres_.size() + kMostProbes - 1) / kMostProbes;
     std::vector<Vec3> kept;
     for (std::size_t i = 0; i < centres_.size(); i += stride) {

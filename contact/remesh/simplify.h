@@ -1,7 +1,7 @@
 // simplify: a mesh of fewer triangles that feels the same, and one of more.
 //
-//   error = max over probes of |phi|,   phi  gap between the probe and the smooth
-//                                            surface of the result [m] (smooth_mesh.h)
+//   error = max over probes of |phi|
+//   phi  gap between the probe and the smooth surface of the result [m] (smooth_mesh.h)
 //   probe  a small ball that touches the input's smooth surface at one of its vertices, and nowhere else
 //
 // The smooth surfaces are compared, since these are what a finger feels: 320 triangles stand for a ball of 20 mm to 3

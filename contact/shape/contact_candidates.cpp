@@ -88,7 +88,7 @@ void ContactCandidates::add(const FoundPoint& point) {
 FoundPoints ContactCandidates::keepBest() {
   FoundPoints out;
   if (refused_.phi > -kInfinity && !overlap()) add(refused_);
-  constexpr std::int8_t kNone = -1, kTaken = -2;
+  constexpr std::int8_t kNone = -1, kTaken = -2;  // marks of places in the table
   std::array<std::int8_t, kMost> group_of;
   std::fill_n(group_of.begin(), count_, kNone);
   std::array<Group, kMaxPairPoints> groups;

@@ -1,7 +1,7 @@
 // convex_features: what the pair routines ask of a convex solid, whatever it is made of.
 //
-//   solid = core + ball of radius rounding(solid);  h(d) = max over the core of d . p, the
-//                                                   core's support function [m for a unit d]
+//   solid = core + ball of radius rounding(solid)
+//   h(d) = max over the core of d . p,  the core's support function [m for a unit d]
 //
 //   supportOf  the core's point that is furthest along d; of equally far ones always the same
 //   facetOf    the flat, straight or single part of the core's surface that faces along d and holds that point (or lies

@@ -97,8 +97,8 @@ class DifferenceSimplex {
 // `furthest`: the point of A - B that is furthest against a direction.
 template <class Furthest>
 CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, const CoreAccuracy& accuracy) {
-  constexpr int kMostSteps = 60;
-  constexpr double kTouching = 1e-13;
+  constexpr int kMostSteps = 60;       // of GJK
+  constexpr double kTouching = 1e-13;  // of the size: round-off of a difference of two points
   DifferenceSimplex simplex;
   Vec3 v = start;
   double length2 = std::numeric_limits<double>::infinity();

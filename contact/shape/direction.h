@@ -1,7 +1,7 @@
 // direction: a vector's length and unit direction, with a fixed choice where it has none.
 //
-//   v = length * n,  |n| = 1;  for |v| below 1e-100 (its square would leave the
-//                              range of doubles): length = 0, n = the choice
+//   v = length * n,  |n| = 1
+//   for |v| below 1e-100, whose square would leave the range of doubles:  length = 0, n = the choice
 //
 // That choice is what makes the closed forms total and deterministic on medial axes. A
 // non-finite `v` gives a non-finite result.

@@ -38,9 +38,8 @@ struct Range {
 
 // All in the solid's frame.
 EdgePart overPolygon(const Vec3& p, const Vec3& e, double length, const Vec3& n, const Facet& f, double slack) {
-  constexpr double kSteepest = 0.05;  // cosine between n and the facet's
   const double rise = f.n.dot(n);
-  if (rise < kSteepest) return {};
+  if (rise < kSteepestFacet) return {};
   const double height = f.n.dot(p - f.corners[0].p) / rise, slope = f.n.dot(e) / rise;
   const Vec3 q = p - height * n, u = e - slope * n;  // seen along n on the facet's plane
   Range range{0, length, slack};

@@ -1,8 +1,8 @@
 // edge_on_facet: the part of a mesh's straight edge that a convex solid's facet shares
 // with it, seen along a normal of contact.
 //
-//   x(t) = p + t e,   gap(t) = how far x(t) is from the solid along n      p begin of the edge [m],
-//                                                                          e its direction, t [m]
+//   x(t) = p + t e,   gap(t) = how far x(t) is from the solid along n
+//   p  begin of the edge [m], e  its direction, t [m]
 //
 // Over a polygon the gap is linear in t, so that it is least, and bodies that lie on each other are carried, at the two
 // ends of that part: ends of the edge, and places where the edge crosses the polygon's outline. (Source of the

@@ -42,7 +42,7 @@ class EdgeSearch {
   }
 
   void explore(const Looked& lo, const Looked& hi, int depth) {
-    constexpr int kDeepest = 12;
+    constexpr int kDeepest = 12;      // halvings of the arc of normals: to a 4096th
     constexpr double kNarrow = 0.05;  // [rad]
     if (std::min(bound(lo, hi, lo.b), bound(lo, hi, hi.b)) < deepest_) return;
     if (lo.b == hi.b) return exploreCorner(lo, hi);
@@ -83,7 +83,7 @@ class EdgeSearch {
 
   // One maximum at most is left.
   void close(Looked lo, Looked hi) {
-    constexpr int kMostSteps = 40;
+    constexpr int kMostSteps = 40;  // of bisection, to round-off
     if (!(lo.rising > 0 && hi.rising < 0)) return;
     for (int i = 0; i < kMostSteps && (lo.n - hi.n).squaredNorm() > 1e-24; ++i) {
       const Looked c = look(chordNormal(lo, hi));

@@ -51,7 +51,6 @@ void makePoint(const Vec3& p, const View& view, FlatCorner named, FlatFacet& out
 // reduced to their corner or edge that reaches furthest.
 void flatten(const PosedSolid& solid, const Facet& facet, double sign, const View& view, std::uint32_t kind,
              double size, FlatFacet& out) {
-  constexpr double kSteepest = 0.05;  // cosine between n and the facet's
   const auto corner = [&](int i) -> const FacetCorner& { return facet.corners[static_cast<std::size_t>(i)]; };
   const auto named = [&](int i, int edge) -> FlatCorner {
     const std::uint32_t name = corner(i).vertex;
@@ -61,7 +60,7 @@ void flatten(const PosedSolid& solid, const Facet& facet, double sign, const Vie
   if (facet.count > 2) {
     const Vec3 m = solid.outwards(facet.n);
     const double rise = view.along(m);
-    if (sign * rise < kSteepest) return makePoint(solid.support(sign * view.R.col(2)), view, named(0, 0), out);
+    if (sign * rise < kSteepestFacet) return makePoint(solid.support(sign * view.R.col(2)), view, named(0, 0), out);
     out.slope = -view.across(m) / rise;
     out.count = facet.count;
     for (int i = 0; i < facet.count; ++i) {

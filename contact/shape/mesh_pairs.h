@@ -2,8 +2,8 @@
 //
 // Triangles near the other body are found through the mesh's tree; then the closest features decide, each
 // with the direction that its geometry gives:
-//   corner of the mesh on the solid     the solid's nearest point and normal there, or
-//                                       the wall that it is behind (solid_walls.h)
+//   corner of the mesh on the solid     the solid's nearest point and normal there, or the wall that it is behind
+//                                       (solid_walls.h)
 //   corner of the solid on a triangle   the triangle's plane, where the corner lies over the triangle; which corners:
 //                                       those of the solid's facet that faces the triangle (convex_features.h)
 //   edge of the mesh on the solid       the direction between those of the edge's two faces in which the gap is

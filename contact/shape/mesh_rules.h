@@ -13,7 +13,7 @@ using FlatTriangle = MeshFeatures::Triangle;
 //   size     [m] radius of the smaller body
 //   deepest  [m] what is deeper than a quarter of it isn't looked at
 struct MeshScale {
-  static constexpr double kLonger = 0.01;
+  static constexpr double kLonger = 0.01;  // of the size
   double size, margin;
 
   double deepest() const { return -0.25 * size; }

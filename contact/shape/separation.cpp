@@ -113,7 +113,7 @@ class Search {
   };
 
   void improve() {
-    constexpr int kMostSteps = 12;
+    constexpr int kMostSteps = 12;     // of GJK, each from the best direction so far
     constexpr double kRoughly = 1e-6;  // of the size: Newton's method does the rest
     for (int i = 0; i < kMostSteps && !isApart(); ++i) {
       const Vec3 shift = (kMovedApart * size_ - best_.gap) * best_.n;
@@ -141,7 +141,7 @@ class Search {
     if (!isProved()) lookAtFace(a_, -best_.n, b_.support(best_.n));
   }
   void lookAtFace(const PosedSolid& solid, const Vec3& d, const Vec3& corner) {
-    constexpr double kSameNormal = 1e-12;
+    constexpr double kSameNormal = 1e-12;  // [rad]: the face itself, but for round-off
     Facet facet;
     facetOf(solid.shape, solid.inwards(d), facet);
     if (facet.count < 3 || facet.rim_radius > 0) return;
@@ -207,7 +207,7 @@ class Search {
   // Again where that leads away: of a corner that all but meets a rim the gap hardly changes over most
   // of a quarter turn, to a kink at its end.
   void polish() {
-    constexpr int kMostRounds = 4;
+    constexpr int kMostRounds = 4;  // of ascents from the best direction so far
     for (int i = 0; i < kMostRounds; ++i) {
       const Vec3 n = best_.n;
       polishAround();
@@ -273,8 +273,8 @@ class Search {
   // Newton on the sphere (edge: null) or on the circle across an edge; leaves where the gap has no maximum of that
   // kind. The gap tells the direction to the root of round-off only, so that the last steps are judged by their length.
   void climbFrom(Vec3 n, const Vec3* edge) {
-    constexpr int kMostSteps = 20, kMostHalvings = 6;
-    constexpr double kSmallest = 1e-14;  // [rad]
+    constexpr int kMostSteps = 20, kMostHalvings = 6;  // of Newton; of a step that doesn't climb
+    constexpr double kSmallest = 1e-14;                // [rad]
     if (edge) n = (n - edge->dot(n) * *edge).normalized();
     double gap = gapAlong(a_, b_, n);
     double last = std::numeric_limits<double>::infinity(), before = -last;

@@ -9,8 +9,8 @@
 // From a direction n0 one step leads to a better one: a is moved along n0 until the two
 // are apart by a hundredth of their size, and
 //
-//   n1 = direction of the nearest points of the two (core_distance.h):   gap(n1) >= gap(n0), equal only
-//                                                                        where no small turn improves it
+//   n1 = direction of the nearest points of the two (core_distance.h)
+//   gap(n1) >= gap(n0), equal only where no small turn improves it
 //
 // (the nearest points of the moved solids are apart by d >= the hundredth = gap(n0) + t, so gap(n1) = d - t n0 . n1 >=
 // gap(n0); it is the convex-concave procedure of A. Yuille, A. Rangarajan, Neural Computation 15, 2003). Where flat

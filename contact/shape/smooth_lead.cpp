@@ -12,15 +12,15 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kAtEnd = 1e-6;     // of the size: beside an end counts as on it
-constexpr double kAtRest = 1e-8;    // of the size: where steps end
-constexpr double kLevel = 1e-8;     // sine
-constexpr double kOnePoint = 1e-3;  // of the size: points nearer to each other are one
-constexpr double kLift = 0.02;      // of the size, beside the depth: how far a face is moved in
-constexpr double kFirstStep = 0.05;
+constexpr double kAtEnd = 1e-6;      // of the size: beside an end counts as on it
+constexpr double kAtRest = 1e-8;     // of the size: where steps end
+constexpr double kLevel = 1e-8;      // sine
+constexpr double kOnePoint = 1e-3;   // of the size: points nearer to each other are one
+constexpr double kLift = 0.02;       // of the size, beside the depth: how far a face is moved in
+constexpr double kFirstStep = 0.05;  // of the size
 constexpr double kLongestLead = 10;  // of the size
-constexpr int kMostQueries = 24;
-constexpr int kMostLess = 2;  // from a face to an edge to a corner
+constexpr int kMostQueries = 24;     // of the surface, for one point
+constexpr int kMostLess = 2;         // from a face to an edge to a corner
 
 class SmoothLead {
  public:

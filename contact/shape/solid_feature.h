@@ -1,7 +1,7 @@
 // solid_feature: the corner, straight edge, round rim, face or core line of a convex solid at which it is touched.
 //
-//   F  a convex set of points of the solid, or a rim's circle;   contact is at the ball of radius
-//                                                                rho about the point c of F
+//   F  a convex set of points of the solid, or a rim's circle
+//   contact is at the ball of radius rho about the point c of F
 //
 //   | touched at | F | rho |
 //   |---|---|---|

@@ -11,5 +11,7 @@ inline constexpr double kLikeNormals = 0.95;    // cosine of 18 degrees: points 
 inline constexpr double kParallelEdges = 1e-6;  // sine: edges nearer to parallel have no direction across both
 // sine of 17 degrees: such edges touch along a length, others in a point
 inline constexpr double kNearlyParallelEdges = 0.3;
+// cosine between a facet's normal and that of contact: a steeper facet has no height along it
+inline constexpr double kSteepestFacet = 0.05;
 
 }  // namespace pincer::contact

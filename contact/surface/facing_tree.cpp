@@ -8,6 +8,7 @@ namespace pincer::contact {
 
 namespace {
 
+// an empty box: widened by anything it becomes that
 constexpr float kInsideOut = std::numeric_limits<float>::infinity();
 constexpr std::int32_t kFirstLeaf = -1;
 

@@ -10,7 +10,7 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr int kMaxFacets = 200;
+constexpr int kMaxFacets = 200;      // that one query walks over
 constexpr double kOnFeature = 1e-8;  // of the mesh's size: nearer to a border's point than this, direction is lost
 
 class FlatWalk {

@@ -10,11 +10,11 @@
 //   Along it the squared distance from C is convex, for kFits / cos^3 beta < 1: the contact is its only
 //   minimum, and hides what lies below. So that
 //
-//   way = min over the parts that aren't gentle of  max( its least distance from that line -
-//                                                   reach sin beta,  0 )  and of  its approach
+//   way = min over the parts that aren't gentle of
+//         max( its least distance from that line - reach sin beta,  0 )  and of  its approach
 //
-//   C  centre, n  unit normal of the contact, h  its height over the contact [m], reach  how
-//                                                far from C contacts are wanted [m]; frame B
+//   C  centre, n  unit normal of the contact, h  its height over the contact [m]
+//   reach  how far from C contacts are wanted [m]; frame B
 #pragma once
 #include "pincer/contact/surface/four_lanes.h"
 

@@ -1,10 +1,10 @@
 // near_parts: the patches that a finger may come to touch before it has moved far, kept for the ticks until it has.
 //
-//   approach = max( |C - x| - reach,  the way to where the patch's normal cone may face C
-//                                     )   over the places x of the patch's ball
+//   approach = max( |C - x| - reach,  the way to where the patch's normal cone may face C )
+//              over the places x of the patch's ball
 //
-//   C  finger's centre [m], reach  how far from it contacts are wanted [m];  a patch matters once
-//                                  the centre has moved by its approach [m]
+//   C  finger's centre [m], reach  how far from it contacts are wanted [m]
+//   A patch matters once the centre has moved by its approach [m].
 //
 // A list of neighbours as in molecular dynamics (L. Verlet, Phys. Rev. 159, 1967). The tree is asked again when
 // the centre has moved by the horizon; what faces along the followed contacts' normals within half of the angle
@@ -31,7 +31,7 @@ namespace pincer::contact {
 constexpr double kApart = 0.998;  // cosine of 3.6 degrees: two contacts differ by more in their normals
 constexpr double kHalfApart = ConesAlong::kHalfApart;
 constexpr double kLookHorizon = 1.0 / 8;  // the way for which a look holds, of its reach
-constexpr std::size_t kMostParts = 512;
+constexpr std::size_t kMostParts = 512;   // of a list; a full one keeps its nearer half
 
 struct NearPart {
   std::int32_t place;  // in the search's order

@@ -31,7 +31,7 @@ bool surelyFlatEnough(const Patch& p) {
 }
 
 bool folds(const Patch& patch) {
-  constexpr int kGrid = 6;
+  constexpr int kGrid = 6;  // parts of an edge
   if (surelyFlatEnough(patch)) return false;
   for (int i = 0; i <= kGrid; ++i) {
     for (int j = 0; i + j <= kGrid; ++j) {

@@ -9,9 +9,9 @@ namespace pincer::contact {
 namespace {
 
 constexpr double kPublishedDone = 1e-6;  // [m]
-constexpr int kMaxIterations = 50;
-constexpr int kMaxEdgeCrossings = 40;  // per step
-constexpr double kGain = 1;
+constexpr int kMaxIterations = 50;       // before it counts as failed
+constexpr int kMaxEdgeCrossings = 40;    // per step
+constexpr double kGain = 1;              // of a step, as published
 
 // The vector `d` in the plane of the triangle, as a change of the barycentric coordinates of corners 0, 1, 2.
 std::array<double, 3> barycentric(const std::array<Vec3, 3>& corners, const Vec3& d) {

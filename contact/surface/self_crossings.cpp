@@ -20,7 +20,7 @@ Corners cornersOf(const TriangleMesh& mesh, std::int32_t triangle) {
 
 // 1 or -1 on either side of the plane through a, b, c; 0 within round-off of it.
 int sideOf(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  constexpr double kRoundOff = 16 * std::numeric_limits<double>::epsilon();
+  constexpr double kRoundOff = 16 * std::numeric_limits<double>::epsilon();  // of a product of three differences
   const Vec3 u = b - a, v = c - a, w = d - a, n = v.cross(w);
   const double volume = u.dot(n);
   const double size =

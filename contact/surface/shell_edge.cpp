@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kAlongEdge = 1e-3;      // eps
 constexpr double kEdgeTolerance = 1e-8;  // of the chord
-constexpr int kMaxEdgeSteps = 24;
+constexpr int kMaxEdgeSteps = 24;        // of Newton's method
 
 struct Quadratic {
   Vec3 value, derivative;

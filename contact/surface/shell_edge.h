@@ -2,8 +2,8 @@
 //
 //   (C - E(s)) . D(s) = 0,   D = +- NL x NR + eps E' / L,   contact normal n = +- (C - E) / |C - E|
 //
-//   E(s)  the edge's cubic, 0 <= s <= 1 [m], L  its chord [m];  NL(s), NR(s)  the two sides'
-//                                                               normals along it;  eps = 1e-3
+//   E(s)  the edge's cubic, 0 <= s <= 1 [m], L  its chord [m]
+//   NL(s), NR(s)  the two sides' normals along it;  eps = 1e-3
 //
 // The solution lies in the plane of the two normals, so that contact passes from a face to the edge and on
 // without a jump, even where the shading normals aren't quite across the curve (with D = E' it would jump by

@@ -52,7 +52,7 @@ int edgeLeft(const std::array<double, 3>& b) {
 // Carries a foot that is outside of its triangle over smooth edges into the one that
 // it is in, as far as the flat mesh tells.
 bool carryInside(const SurfaceNet& net, Foot& foot, int& crossings) {
-  constexpr int kMostCrossings = 4;
+  constexpr int kMostCrossings = 4;  // of edges in one step
   for (; std::min({foot.b[0], foot.b[1], foot.b[2]}) < 0; ++crossings) {
     const int edge = edgeLeft(foot.b);
     if (!(crossings < kMostCrossings) || net.isSharp(foot.triangle, edge)) return false;
@@ -165,7 +165,7 @@ bool ShellWalk::polish(const PatchPoint& x, const FaceStep& step) {
 }
 
 bool ShellWalk::halveLastMove(double residual) {
-  constexpr double kLeastScale = 0.05;
+  constexpr double kLeastScale = 0.05;  // of a step that is halved
   if (last_scale_ < kLeastScale || residual <= last_residual_) return false;
   ++steps_;
   last_scale_ *= 0.5;

@@ -2,15 +2,13 @@
 //
 // Kept are the mesh, its neighbours and its corner normals, about 60 bytes per triangle; a patch is built from them
 // when it is first touched. Of the shading variants
-//   smooth            has cubic edges that both sides share (edge_cubic.h), and a
-//                     centre by its medians, of the same cubics:
-//                       b_111 = (27 m - sum of corners - 3 sum of handles) / 6,   m  mean of the
-//                       medians' places after 2/3 of their way [m],
-//   smooth_published  each side's own, V = P + (d - (d.N) N) / 3, d to the other end, b_111 = E +
-//                     (E - V) / 2 of the handles' mean E and the
-//                       corners' V (Vlachos et al., eq. 3),
-//   facet and force   have flat triangles with their own normals, which aren't kept;
-//                     `force` keeps the corner normals beside.
+//   smooth            has cubic edges that both sides share (edge_cubic.h), and a centre by its medians, of the same
+//                     cubics:  b_111 = (27 m - sum of corners - 3 sum of handles) / 6,
+//                     m  mean of the medians' places after 2/3 of their way [m]
+//   smooth_published  each side's own, V = P + (d - (d.N) N) / 3, d to the other end,
+//                     b_111 = E + (E - V) / 2 of the handles' mean E and the corners' V (Vlachos et al., eq. 3)
+//   facet and force   have flat triangles with their own normals, which aren't kept; `force` keeps the corner normals
+//                     beside.
 #pragma once
 #include <array>
 #include <cstdint>

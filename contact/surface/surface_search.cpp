@@ -11,7 +11,7 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr int kMaxVisits = 2000;
+constexpr int kMaxVisits = 2000;  // leaves of the tree in one search
 
 // Where the segment from `a` to `b` meets the triangle, if it does. Source: T. Moeller,
 // B. Trumbore, J. Graphics Tools 2(1), 1997.
@@ -110,8 +110,8 @@ double bulgeOf(const Patch& patch) {
 
 SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector,
                              const std::function<void(double)>& progress) {
-  constexpr double kPatches = 0.6;  // of the time
-  constexpr std::int32_t kReported = 1 << 14;
+  constexpr double kPatches = 0.6;             // of the time
+  constexpr std::int32_t kReported = 1 << 14;  // patches between two reports of progress
   ConeFinder cones(net);
   std::vector<FacingBox> boxes;
   std::vector<PatchBounds> unordered;

@@ -1,7 +1,7 @@
 // turns: which of many places is looked at now, so that each is looked at once within a given way, and few at a time.
 //
-//   a place has its turn where   gone / period   passes   i + phase,   i any whole number,   phase
-//                                                                      = frac(place / golden ratio)
+//   a place has its turn where   gone / period   passes   i + phase,   i any whole number
+//   phase = frac(place / golden ratio)
 //
 //   gone  the way that has been gone so far, period  within which each has one turn [m]
 //

@@ -17,8 +17,8 @@ constexpr Segment kA{0.0202, 0.4864e-4, 0.001843e-4, 0.4864e-4};
 constexpr Segment kC{0.0249, 0.959e-4, 0.959e-4, 0.0051e-4};
 constexpr Segment kBE{0.2359, 11.09e-4, 10.06e-4, 0.591e-4};
 constexpr Segment kDF{0.1906, 7.11e-4, 0.629e-4, 6.246e-4};
-constexpr double kBase = 11.87e-4;
-constexpr double l3 = 0.0325;  // crank of the push rod [m]
+constexpr double kBase = 11.87e-4;  // about the vertical axis [kg m^2]
+constexpr double l3 = 0.0325;       // crank of the push rod [m]
 
 }  // namespace
 

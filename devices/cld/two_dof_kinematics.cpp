@@ -125,7 +125,7 @@ bool TwoDofKinematics::reaches(const PadWay& way) const {
 
 // Sixteen places, then the golden section round the best of them.
 PadWay TwoDofKinematics::nearestOnEdge(const Vec2& place_L, const PadWay& from, const PadWay& to) const {
-  constexpr int kPieces = 16;
+  constexpr int kPieces = 16;  // of the way, each looked at before the search
   const auto distance = [&](double share) { return (placeAt(blend(from, to, share)) - place_L).squaredNorm(); };
   int best = 0;
   double least = distance(0);

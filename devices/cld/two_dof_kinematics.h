@@ -2,8 +2,8 @@
 // its tactor on the bottom half of a finger.
 //
 //   p(q) = (x + R cos b sin a,  R sin b,  -R cos b cos a)                         tactor's root, on the ring
-//   J = d p / d q,   det J = -R^2 cos^2 b sin a                                   singular: ring
-//                    upright (a = 0), carriage at +-90 degrees
+//   J = d p / d q,   det J = -R^2 cos^2 b sin a
+//       singular: ring upright (a = 0), carriage at +-90 degrees
 //   s(x, a):  x_profile(s) + R a_profile(s) = x + R a                             place
 //             along the finger, by the finger's profile
 //   place_L = (s, r b)                              where s <= 0: the finger is a cylinder there

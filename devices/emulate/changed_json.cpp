@@ -9,7 +9,7 @@ std::string changedJson(std::string text, std::size_t most, std::mt19937_64& ran
   constexpr std::array<std::string_view, 17> kPieces{"{",       "}",   "[",     "]",       "\"",  ",",
                                                      "9",       "e99", "null",  "true",    ":1,", "\\u0000",
                                                      "\\u00e9", "-",   "1e400", "\\ud800", "\xff"};
-  constexpr std::size_t kLongest = 30;
+  constexpr std::size_t kLongest = 30;  // bytes of an inserted piece
   const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
   for (std::size_t left = 1 + below(most); left > 0 && !text.empty(); --left) {
     const std::size_t at = below(text.size());

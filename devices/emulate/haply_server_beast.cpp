@@ -29,8 +29,8 @@ using boost::asio::ip::tcp;
 using Error = beast::error_code;
 using Socket = websocket::stream<tcp::socket>;
 
-constexpr auto kTurn = std::chrono::microseconds(500);
-constexpr auto kLook = std::chrono::microseconds(200);
+constexpr auto kTurn = std::chrono::microseconds(500);  // of the devices' time
+constexpr auto kLook = std::chrono::microseconds(200);  // at sockets
 constexpr double kLongestTurn = 0.02;  // the devices stand still while this computer is away for longer [s]
 
 // One text as a server's frame by hand, for what Beast won't do.

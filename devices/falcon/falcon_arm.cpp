@@ -19,7 +19,7 @@ constexpr int kTimeout = 1000;      // [ms]
 constexpr int kStatus = 2;          // bytes of the chip's before each packet
 constexpr int kEmptyPackets = 40;   // without a word: at its latency of 16 ms 0.6 s
 constexpr int kAnswerPackets = 8;   // in which an answer comes
-constexpr int kGreetings = 8;
+constexpr int kGreetings = 8;       // tried at most
 constexpr std::array<std::uint8_t, 3> kHello{0x0a, 0x43, 0x0d};
 constexpr std::array<std::uint8_t, 4> kHelloBack{0x0a, 0x44, 0x2c, 0x0d};
 constexpr double kCountsPerTorque = 10000;  // [1/(N m)], libnifalcon's

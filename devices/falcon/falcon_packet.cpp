@@ -6,7 +6,7 @@ namespace pincer::devices::falcon {
 namespace {
 
 constexpr std::size_t kStatusBytes = 2;
-constexpr int kMostTorque = 4096;
+constexpr int kMostTorque = 4096;  // counts: 12 bits and their sign
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // falcon_packet: the 16 characters that go to a Falcon's firmware, and the 16 that come back.
 //
-//   '<' g0 g1 g2 g3 h0 h1 h2 h3 i0 i1 i2 i3 j k '>'    each but the ends is a nibble +
-//                                                      'A', least significant nibble first
+//   '<' g0 g1 g2 g3 h0 h1 h2 h3 i0 i1 i2 i3 j k '>'
+//   each but the ends is a nibble + 'A', least significant nibble first
 //
 // To the Falcon: g, h, i motor torques (16 bits, two's complement), j lamps and homing. From it: g,
 // h, i encoder counts, j buttons (bits 0 to

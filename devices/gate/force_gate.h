@@ -1,17 +1,16 @@
 // force_gate: the last stage before a motor. Whatever comes in, what goes out is finite,
 // bounded and slow; any doubt is zero, latched.
 //
-//   trips      not finite, fault before, invalid sample, over-speed, missed deadline, stale
-//              sample: zero at once, until an operator arms
+//   trips      not finite, fault before, invalid sample, over-speed, missed deadline, stale sample: zero at once,
+//              until an operator arms
 //   peak       |f| <= peak_force, direction kept
 //   torque     f / max(1, max_i |(J^T f)_i| / peak_torque_i): one common scale, direction kept
 //   ramp       f min(1, t_armed / ramp_time)
-//   thermal    |f|^2 <= f_cont^2 + (H - heat) / tau,   d heat / dt = |f|^2 - f_cont^2, heat
-//                                                      >= 0,   tau = thermal_time / 10,
-//              H = (f_peak^2 - f_cont^2) (thermal_time + tau): peak_force from cold lasts
-//              thermal_time, then sinks smoothly to f_cont
-//   slew       f = s + (f - s) min(1, (slew dt - |s - f_last|) / |f - s|),   s = f_last within the
-//              torques of now:   |f - f_last| <= slew dt
+//   thermal    |f|^2 <= f_cont^2 + (H - heat) / tau,   d heat / dt = |f|^2 - f_cont^2,   heat >= 0
+//              tau = thermal_time / 10,   H = (f_peak^2 - f_cont^2) (thermal_time + tau):
+//              peak_force from cold lasts thermal_time, then sinks smoothly to f_cont
+//   slew       f = s + (f - s) min(1, (slew dt - |s - f_last|) / |f - s|)
+//              s = f_last within the torques of now:   |f - f_last| <= slew dt
 //
 // in this order, behind the passivity controller of grasp/passivity (tasks/run/tick/tick.cpp). Slew comes last,
 // because its bound is one on what the motor gets: a stage behind it could break it. It can delay the thermal stage

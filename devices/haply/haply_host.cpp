@@ -16,8 +16,8 @@
 namespace pincer::devices::haply {
 namespace {
 
-constexpr std::int64_t kLeaving = 100 * kMillisecond;
-constexpr std::int64_t kShortestPause = 250 * kMillisecond, kLongestPause = 2000 * kMillisecond;
+constexpr std::int64_t kLeaving = 100 * kMillisecond;  // for zeros to arrive at the end
+constexpr std::int64_t kShortestPause = 250 * kMillisecond, kLongestPause = 2000 * kMillisecond;  // between attempts
 
 DeviceState stateOf(const HaplySession& session) {
   switch (session.phase()) {

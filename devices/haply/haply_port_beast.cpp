@@ -24,8 +24,8 @@ namespace websocket = beast::websocket;
 using boost::asio::ip::tcp;
 using Error = beast::error_code;
 
-constexpr std::size_t kQueue = 9;  // messages: the 8 that may be unanswered, and one
-constexpr auto kCloseTime = std::chrono::milliseconds(50);
+constexpr std::size_t kQueue = 9;                           // messages: the 8 that may be unanswered, and one
+constexpr auto kCloseTime = std::chrono::milliseconds(50);  // for the other side's close frame
 
 tcp::endpoint endpointOf(std::uint16_t port) { return {boost::asio::ip::address_v4::loopback(), port}; }
 

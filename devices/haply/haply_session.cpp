@@ -9,16 +9,16 @@
 namespace pincer::devices::haply {
 namespace {
 
-constexpr std::int64_t kInventoryTime = 2000 * kMillisecond;
-constexpr std::int64_t kSettleTime = 500 * kMillisecond;   // of zeros
-constexpr std::int64_t kEchoStep = 50 * kMillisecond;      // of each sign
-constexpr std::int64_t kSilence = 250 * kMillisecond;      // without an answer
-constexpr std::int64_t kFullPeriod = 250 * kMillisecond;   // between two looks at the settings
-constexpr std::int64_t kHomingPeriod = 10 * kMillisecond;  // between two probes
-constexpr std::int64_t kEventsMayBeLost = 1000 * kMillisecond;
-constexpr std::int64_t kEchoComes = 20 * kMillisecond;  // after the force, as the service tells it
-constexpr double kEchoError = 0.02;                     // of the echo of kEchoForce [N]
-constexpr int kMostUnsound = 3;                         // in a row
+constexpr std::int64_t kInventoryTime = 2000 * kMillisecond;    // for the first full message
+constexpr std::int64_t kSettleTime = 500 * kMillisecond;        // of zeros
+constexpr std::int64_t kEchoStep = 50 * kMillisecond;           // of each sign
+constexpr std::int64_t kSilence = 250 * kMillisecond;           // without an answer
+constexpr std::int64_t kFullPeriod = 250 * kMillisecond;        // between two looks at the settings
+constexpr std::int64_t kHomingPeriod = 10 * kMillisecond;       // between two probes
+constexpr std::int64_t kEventsMayBeLost = 1000 * kMillisecond;  // then the arms are doubted
+constexpr std::int64_t kEchoComes = 20 * kMillisecond;          // after the force, as the service tells it
+constexpr double kEchoError = 0.02;                             // of the echo of kEchoForce [N]
+constexpr int kMostUnsound = 3;                                 // in a row
 
 }  // namespace
 

@@ -16,7 +16,7 @@ constexpr std::int64_t kFrozenAfter = 500 * kMillisecond;  // a place that is eq
 constexpr double kFrozenForce = 0.5;                       // although the force changed by this [N]
 constexpr double kEchoOver = 0.2, kEchoOverShare = 0.05;   // the echo may be above what was sent by [N], and of it [-]
 constexpr double kAttenuated = 0.8;                        // an echo below this share of what was sent is counted
-constexpr std::int64_t kConfigureMayLast = 500 * kMillisecond;
+constexpr std::int64_t kConfigureMayLast = 500 * kMillisecond;  // until the arm's settings are those asked for
 
 constexpr std::array<std::string_view, 4> kSafetyTypes{"ebrake_triggered", "stall_detected", "stability_ceiling",
                                                        "fod_stage_changed"};

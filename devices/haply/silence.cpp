@@ -16,10 +16,10 @@
 namespace pincer::devices::haply {
 namespace {
 
-constexpr double kGentle = 0.2;  // up [N]
-constexpr double kFar = 0.03;    // [m]
-constexpr std::int64_t kPatience = 2000 * kMillisecond;
-constexpr std::int64_t kReadyIn = 10000 * kMillisecond;
+constexpr double kGentle = 0.2;                          // up [N]
+constexpr double kFar = 0.03;                            // [m]
+constexpr std::int64_t kPatience = 2000 * kMillisecond;  // for the arm to move away
+constexpr std::int64_t kReadyIn = 10000 * kMillisecond;  // from connecting to commanding
 // after arming, the echo's test included; else this computer is too busy
 constexpr std::int64_t kPushesIn = 3000 * kMillisecond;
 constexpr std::int64_t kPushes = 100 * kMillisecond;  // a push that is well established

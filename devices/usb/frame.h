@@ -1,8 +1,8 @@
 // frame: the 64 bytes that travel between host and device, in both directions
 // (docs/usb-protocol.md). Numbers are little-endian.
 //
-//   0  magic "PN"     2  version, 1     3  type     4  sequence, of the sender, + 1 per
-//                                                      frame     8  the sender's clock [us]
+//   0  magic "PN"     2  version, 1     3  type     4  sequence, of the sender, + 1 per frame
+//   8  the sender's clock [us]
 //   16 payload, 46 bytes; what a type doesn't use is zero     62  CRC-16 of the bytes before it
 //
 // CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xffff, no reflection, no final xor; "123456789" gives 0x29b1.

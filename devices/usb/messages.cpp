@@ -7,10 +7,10 @@ namespace {
 
 constexpr double kNano = 1e-9, kMicro = 1e-6;                        // [m], [N] or [m/s]
 constexpr double kReach = 2, kForce = 100, kSpeed = 50, kPad = 0.1;  // [m], [N], [m/s], [m]
-constexpr double kGimbalStep = 1.0 / 16384;
-constexpr double kTorqueStep = 1e-4, kTorque = 6.5;   // [N m]
-constexpr double kMassStep = 1e-4, kMass = 6.5;       // [kg]
-constexpr double kDampingStep = 1e-3, kDamping = 65;  // [N s/m]
+constexpr double kGimbalStep = 1.0 / 16384;                          // of a quaternion's component: 0.007 degrees
+constexpr double kTorqueStep = 1e-4, kTorque = 6.5;                  // [N m]
+constexpr double kMassStep = 1e-4, kMass = 6.5;                      // [kg]
+constexpr double kDampingStep = 1e-3, kDamping = 65;                 // [N s/m]
 
 enum ArmBit : std::uint8_t {
   kArmValid = 1,

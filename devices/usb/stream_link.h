@@ -1,8 +1,8 @@
 // stream_link: what arms and displays have in common on USB: the latest state for the servo, and
 // the servo's newest command for the device.
 //
-//   deadline sent = deadline asked for - age of the command;   nothing is sent of a command
-//                                                              that is older than its deadline
+//   deadline sent = deadline asked for - age of the command
+//   Nothing is sent of a command that is older than its deadline.
 //
 // So a command dies at the same moment whether the USB thread was held up or not: its life
 // doesn't begin anew when it is sent at last.

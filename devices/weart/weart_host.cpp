@@ -18,9 +18,9 @@
 namespace pincer::devices::weart {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;  // [ns]
-constexpr std::int64_t kPressLives = 100 * kMs;
-constexpr int kPeriod = 10;  // between two levels [ms]
+constexpr std::int64_t kMs = 1'000'000;          // [ns]
+constexpr std::int64_t kPressLives = 100 * kMs;  // without a tick: then zero
+constexpr int kPeriod = 10;                      // between two levels [ms]
 
 // Connected within `timeout` [s], or -1.
 int connected(const addrinfo& place, double timeout) {

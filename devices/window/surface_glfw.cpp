@@ -95,7 +95,7 @@ class WindowSurface final : public Surface {
     if (events_.size() < kMostEvents) events_.push_back(event);
   }
 
-  static constexpr std::size_t kMostEvents = 4096;
+  static constexpr std::size_t kMostEvents = 4096;  // between two pictures
   GlfwLibrary library_;
   GLFWwindow* window_ = nullptr;
   std::vector<InputEvent> events_;

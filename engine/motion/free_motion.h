@@ -6,8 +6,8 @@
 //   first part    turns the body about L, fixed in W, by h |L| / I_i; it commutes
 //                 with the others, so once per step is exact
 //   other parts   turn the body about its own axis k (j) by h L_k (1/I_k - 1/I_i), L_k constant meanwhile
-//   L  angular momentum about the centre of mass [kg m^2/s];  I_i, I_j, I_k  principal moments
-//                                                             of inertia [kg m^2];  h  step [s]
+//   L  angular momentum about the centre of mass [kg m^2/s];  h  step [s]
+//   I_i, I_j, I_k  principal moments of inertia [kg m^2]
 //
 // With I_i = I_j the last part vanishes: exact for symmetric and spherical bodies. Else the last two alternate in a
 // composition of order 4: I. Omelyan, I. Mryglod, R. Folk, Comput. Phys. Commun. 146 (2002) 188-202 (position-extended

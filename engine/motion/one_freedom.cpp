@@ -15,7 +15,7 @@ constexpr double kRoundOffOfTerm = 1e-17;  // of the largest term: the tail is f
 constexpr double kLongestTurn = 0.25;      // (|w| + natural frequency) h, of one series: its terms fall by 6 at least
 constexpr double kLargestDecay = 1;        // c h of one series
 constexpr double kMostDecay = 8;           // c h beyond which the exponential takes over
-constexpr double kMostSteps = 64;
+constexpr double kMostSteps = 64;          // series in a tick
 
 // 1 / n: a division costs as much as the rest of a short sum.
 constexpr std::array<double, kMostTerms + 1> kInverse = [] {

@@ -2,8 +2,8 @@
 //
 //   th'' = a cos th + b sin th - c th' + d   (pivot),     th'' = a - c th'   (slider),     th(0) = 0,   th'(0) = w
 //
-//   th  turned or gone since the start [rad, m];  a, b  gravity's [1/s^2 or m/s^2, 1/s^2];
-//                                                       c  damping over inertia [1/s], >= 0
+//   th  turned or gone since the start [rad, m];  c  damping over inertia [1/s], >= 0
+//   a, b  gravity's [1/s^2 or m/s^2, 1/s^2]
 //   d  of a torque that stays [1/s^2]
 //
 // The Taylor series of the solution, coefficient by coefficient (of sin th and cos th alike), up to round-off: no

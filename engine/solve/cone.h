@@ -69,8 +69,8 @@ enum class ContactMode : unsigned char { kOpen, kStick, kSlide };
   return tangentNorm2(y, rows) <= mu * mu * yn * yn ? ContactMode::kStick : ContactMode::kSlide;
 }
 
-// Derivative D of the coupled projections of a sliding y:  dp_T = s (I - t t^T) dy_T + mu t dy_n,  dp_n =
-//                                                          dy_n,  t = y_T / |y_T|,  s = mu y_n / |y_T|.
+// Derivative D of the coupled projections of a sliding y:
+//   dp_T = s (I - t t^T) dy_T + mu t dy_n,  dp_n = dy_n,  t = y_T / |y_T|,  s = mu y_n / |y_T|
 struct SlideDerivative {
   double t[kMaxContactRows];  // [-]; its normal row is 0
   double s;                   // [-], 0 <= s < 1
@@ -91,9 +91,9 @@ struct SlideDerivative {
   return d;
 }
 
-// Derivative D of the projection onto K_mu of a y outside of it and of its polar cone:  D = z z^T / (1 + mu^2) + mu
-// (p_n / |y_T|) (I_T - t t^T),  t = y_T / |y_T|,
-// z = mu t + e_n,  p_n = (y_n + mu |y_T|) / (1 + mu^2). Symmetric; I_T the identity but for the normal row.
+// Derivative D of the projection onto K_mu of a y outside of it and of its polar cone; symmetric:
+//   D = z z^T / (1 + mu^2) + mu (p_n / |y_T|) (I_T - t t^T),  I_T  the identity but for the normal row
+//   t = y_T / |y_T|,  z = mu t + e_n,  p_n = (y_n + mu |y_T|) / (1 + mu^2)
 [[gnu::always_inline]] inline void rimDerivative(const double* y, int rows, double mu,
                                                  double (&D)[kMaxContactRows][kMaxContactRows]) {
   const double yT = std::sqrt(tangentNorm2(y, rows)), inverse = 1 / (1 + mu * mu),

@@ -4,8 +4,8 @@
 //
 // Two ways to the same x, chosen once per solve:
 //   contact by contact   E + P W^ as a dense matrix of the contacts' rows. For few contacts.
-//   mover by mover       with y = A^T x:  (I + A^T G A) y = A^T K^-1 b,   x = K^-1 b - G A y,   K
-//                                                                         = E + P R,   G = K^-1 P
+//   mover by mover       with y = A^T x:  (I + A^T G A) y = A^T K^-1 b,   x = K^-1 b - G A y
+//                        K = E + P R,   G = K^-1 P
 //     A mover that only one contact touches is no unknown but part of R_i: fingers around an object cost 6
 //     unknowns, not 6 per finger. The rest is block-sparse by the graph of movers (block_lu.h). For redundant
 //     contacts (many on few movers), and for many contacts.
@@ -25,7 +25,7 @@ class ContactEquations {
   ContactEquations(const ScaledProblem& problem, EquationForm form, SolverScratch& scratch);
 
   // Contact i's equation: x_i = b_i;  epsilon x_i + (W^ x)_i = b_i;  or E x_i + P (W^ x)_i = b_i,
-  //                                                                  row-major with stride 4.
+  // row-major with stride 4.
   void decouple(int i) { terms_[i].coupling = Coupling::kNone; }
   void identify(int i, double epsilon);
   void setGeneral(int i, const double* E, const double* P);

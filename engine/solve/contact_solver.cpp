@@ -18,8 +18,8 @@ namespace {
 constexpr std::int64_t kPerSmallStep = 1000;  // multiplications; of three contacts at most
 constexpr int kFewestStops = 4;               // sweeps, whatever is left of the budget
 
-// Scales r so that  E(r) = r . (q + W r / 2),  the energy that it brings in, isn't
-//                                              positive: to the minimum of E on its ray.
+// Scales r so that the energy that it brings in,  E(r) = r . (q + W r / 2),  isn't positive:
+// to the minimum of E on its ray.
 // The biases within q count as velocities, and compliance within W as inertia: the best that can be said without
 // knowing the bodies, and on the safe side but for work that a bias does on purpose (a penetration pushed out, a
 // restitution). False if there was nothing to do.

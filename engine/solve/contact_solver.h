@@ -1,7 +1,7 @@
 // contact_solver: solves a ContactProblem, of any size, by one equation and one number for its error.
 //
-//   u = W r + q + e (r - r_c),   r and u in Coulomb's law with exact cones,   e_i = epsilon w_i;   r_c moves
-//                                to r until |e (r - r_c)| is small enough
+//   u = W r + q + e (r - r_c),   r and u in Coulomb's law with exact cones,   e_i = epsilon w_i
+//   r_c moves to r until |e (r - r_c)| is small enough
 //
 //   look at the warm start; good enough? done
 //   up to three contacts of one to three movers   Newton's method, with all sizes known

@@ -100,7 +100,7 @@ double naturalMapOf(const DenseProblem& problem, const Eigen::VectorXd& r, const
 }  // namespace
 
 DenseAnswer solveDense(const DenseProblem& problem, const SolverOptions& options) {
-  constexpr int kRefinements = 3;
+  constexpr int kRefinements = 3;  // each by the residual of the full W
   check(problem);
   const Eigen::MatrixXd A = factorOf(problem.W);
   FactoredProblem factored(A);

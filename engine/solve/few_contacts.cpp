@@ -25,10 +25,10 @@ struct Patience {
 constexpr Patience patienceOf(const SolverOptions& options) {
   return options.accuracy > 0 ? Patience{12, 3, 60} : Patience{20, 20, 300};
 }
-constexpr double kNearSolution = 1e-8;  // residual from which Newton's method needs a step or two
-constexpr double kShiftedGap = 1e-6;    // of a problem with frozen shift, itself an approximation
-constexpr int kSweepsPerRound = 15;     // enough to leave the basin in which Newton's method failed
-constexpr int kGivingRounds = 12;
+constexpr double kNearSolution = 1e-8;   // residual from which Newton's method needs a step or two
+constexpr double kShiftedGap = 1e-6;     // of a problem with frozen shift, itself an approximation
+constexpr int kSweepsPerRound = 15;      // enough to leave the basin in which Newton's method failed
+constexpr int kGivingRounds = 12;        // of Newton's method on contacts that give way
 constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
 // [m/s], or as much as a residual: enough once Newton's method failed. Contacts that contradict each other by the
 // round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt
@@ -91,7 +91,7 @@ class FewSearch {
 
   // An answer within the tolerance already, brought to round-off.
   SolveMethod polish(const SolverOptions& options) {
-    constexpr int kPolishSteps = 2;
+    constexpr int kPolishSteps = 2;  // of Newton's method, which converges quadratically here
     keepBest();
     iterations_ +=
         iterateNewton(problem_, kStrictness * options.tolerance, kPolishSteps, equations_, scratch_, current_, trial_);

@@ -1,8 +1,8 @@
 // interior_point: a primal-dual interior-point method for the frictional contact
 // problem, for where Newton's method finds no way.
 //
-//   x = (r_T, mu r_n),  z = (u_T, u_n / mu + |u_T|),   both in the Lorentz cone,  x o z = sigma
-//                                                      e -> 0   (o: the cone's Jordan product)
+//   x = (r_T, mu r_n),  z = (u_T, u_n / mu + |u_T|),   both in the Lorentz cone
+//   x o z = sigma e -> 0   (o: the cone's Jordan product)
 //   (N^2 + (I + e_n t^T) S W^ S) dx = N (lambda \ c) + z - z(x),   t = u_T / |u_T|,   S = diag(1, 1, 1 / mu[, 1 ..])
 //
 // with Nesterov-Todd's scaling N: N x = N^-1 z = lambda, and Mehrotra's predictor and corrector. The shift |u_T| is

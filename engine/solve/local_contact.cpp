@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kSingular = 1e-14;  // relative: what is added to A so that a direction without mobility has a solution
 constexpr double kRootRoundOff = 1e-15;  // relative
-constexpr int kAlphaSteps = 60;
+constexpr int kAlphaSteps = 60;          // of Newton's method within a bracket, at most
 
 // The tangential problem that is left when u_n = 0 has been solved for r_n. D tangential rows, known to the compiler.
 template <int D>
@@ -104,7 +104,7 @@ class TangentProblem {
 
 // Where Newton's method leaves the bracket: alpha spans many decades where a direction has hardly any mobility.
 double between(double low, double high, double alpha, double magnitude) {
-  constexpr double kFactor = 64;
+  constexpr double kFactor = 64;  // downwards, while the bracket begins at 0
   if (!std::isfinite(high)) return 8 * std::max(alpha, magnitude);
   return low > 0 ? std::sqrt(low) * std::sqrt(high) : high / kFactor;
 }

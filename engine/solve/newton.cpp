@@ -12,7 +12,7 @@ namespace {
 constexpr double kContactsEpsilon = 1e-11;  // far above round-off, far below the W^ of one contact (1)
 constexpr double kMoversEpsilon = 1e-6;  // redundant contacts share their load by the round-off of their gaps over this
 constexpr double kCorrected = 1e-8;      // of Newton's equations: what epsilon may leave of them
-constexpr int kMostCorrections = 3;
+constexpr int kMostCorrections = 3;      // by the same factors
 // small enough that a few rounds do, large enough for the equations to be tame
 constexpr double kProximalEpsilon = 1e-3;
 constexpr double kRoundDecrease = 1e-8;  // of |Phi|^2 in a round

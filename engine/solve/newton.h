@@ -1,7 +1,7 @@
 // newton: semi-smooth Newton on Alart and Curnier's equations.
 //
-//   Phi_n = r_n - max(0, y_n),   Phi_T = r_T - P_disc(mu max(0, y_n))(y_T),   y =
-//                                r - rho u,   rho = 1 in scaled variables
+//   Phi_n = r_n - max(0, y_n),   Phi_T = r_T - P_disc(mu max(0, y_n))(y_T)
+//   y = r - rho u,   rho = 1 in scaled variables
 //   ((I - D) + D W^ + epsilon I) dr = -Phi,   D = dP/dy,   r <- P_K(r + t dr)
 //
 // epsilon is a proximal term: it leaves the solution alone and picks the smallest step among the many of redundant

@@ -11,7 +11,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kMostWalls = 4;
+constexpr int kMostWalls = 4;  // of one point; more go to the general methods
 constexpr int kSteps = 48;     // to each side of where a wall's slip is least, each
 constexpr double kGrowth = 2;  // times as long as the one before: from a tenth of its width there over fourteen decades
 constexpr double kNarrow = 1e-12;           // of y_0: walls that agree have no width

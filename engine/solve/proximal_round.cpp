@@ -13,7 +13,7 @@ constexpr int kRoundTrials = 6;            // step lengths 1, 1/2, .. 1/32
 constexpr double kRoundSufficient = 1e-4;  // Armijo's
 constexpr double kNearlyFlat =
     0.1;  // of the slope at the start: of the energy, where a step ends; of a bracket, how near its ends a trial comes
-constexpr int kMostDoublings = 2, kMostTrials = 8;
+constexpr int kMostDoublings = 2, kMostTrials = 8;  // of a step's length
 
 // r = C(x), x overwritten.
 template <class Rows>

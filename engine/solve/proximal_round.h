@@ -1,8 +1,8 @@
 // proximal_round: the contact problem in which contacts give way to what changes their impulses, solved by
 // semi-smooth Newton in the movers' space.
 //
-//   u = A y + q,   r_i(y) = C_i(r_ci - u_i / e_i),   e_i = epsilon w_i          the answer of  u
-//                                                    + e (r - r_c)  for velocities that are u
+//   u = A y + q,   r_i(y) = C_i(r_ci - u_i / e_i),   e_i = epsilon w_i
+//     the answer of  u + e (r - r_c)  for velocities that are u
 //   y - A^T r(y) = 0                                                          [sqrt(J)]
 //   (I + A^T (D / e) A) dy = -(y - A^T r(y)),   D = dC,                        steps 1, 1/2, .. by |y - A^T r(y)|
 //
@@ -15,8 +15,8 @@
 // With the shift frozen, s_i = mu_i |u_iT| of the round's start, the round is the least of a convex energy, and
 // Newton's method finds it from wherever it starts, by steps to where the energy is least along them:
 //
-//   minimise over y   |y|^2 / 2 + sum_i e_i |P_K(r_ci - (u_i + s_i e_n) / e_i)|^2 / 2,
-//                     r_i(y) = P_K(r_ci - (u_i + s_i e_n) / e_i)
+//   minimise over y   |y|^2 / 2 + sum_i e_i |P_K(r_ci - (u_i + s_i e_n) / e_i)|^2 / 2
+//   r_i(y) = P_K(r_ci - (u_i + s_i e_n) / e_i)
 //
 // The error of r is then the give, and by how much the shift has changed.
 // Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Engrg. 92 (1991) 353-375; R. Rockafellar, SIAM J. Control

@@ -1,7 +1,7 @@
 // residual: how far impulses are from obeying the contact law, in a way that nothing that isn't finite can pass.
 //
-//   error     max_i w_i |r_i - P_K(r_i - u~_i / w_i)|   [m/s],   u~_i = u_i + mu_i |u_iT| e_n,
-//                                                                w_i  mean of W_ii's diagonal
+//   error     max_i w_i |r_i - P_K(r_i - u~_i / w_i)|   [m/s]
+//   u~_i = u_i + mu_i |u_iT| e_n,   w_i  mean of W_ii's diagonal
 //   residual  error / max(|q|_inf, kVelocityFloor, 1e-4 max_i w_i r_in)   [-]
 //
 // The last term of the maximum speaks up only where W r cancels to less than 1e-4 of itself (mass ratios
@@ -44,7 +44,7 @@ class WorstResidual {
   }
 
  private:
-  static constexpr double kCancellation = 1e-4;
+  static constexpr double kCancellation = 1e-4;  // of the largest response: what W r may cancel to
   double worst2_ = 0;
   double response_ = 0;
   double check_ = 0;

@@ -1,8 +1,8 @@
 // round_contact: a contact whose points lie on its bodies' normals through their centres, as between balls: 16 numbers,
 // two lines of the cache, say what A's 36 do.
 //
-//   u = A y + q = R^T (dv + dw x n) + q,   dv = sum_b linear_b y_b(1..3),   dw = sum_b turn_b y_b(4..6);     A^T r:
-//                                                                           f = R r,  (linear_b f, turn_b n x f)
+//   u = A y + q = R^T (dv + dw x n) + q,   dv = sum_b linear_b y_b(1..3),   dw = sum_b turn_b y_b(4..6)
+//   A^T r:  f = R r,  (linear_b f, turn_b n x f)
 //
 //   R       columns (t1, t2, n), all three turned round where only the second body moves
 //   linear  M_b^-1/2, with its sign [kg^-1/2];   turn  arm times I_b^-1/2, likewise

@@ -1,7 +1,7 @@
 // scaled_problem: a ContactProblem in variables in which every contact weighs the same.
 //
-//   r^ = s r,   u^ = u / s,   A^_i = A_i / s_i,   W^ = A^ A^^T,   q^ = q / s,   s_i = sqrt(w_i),
-//                                                                 w_i = mean of W_ii's diagonal
+//   r^ = s r,   u^ = u / s,   A^_i = A_i / s_i,   W^ = A^ A^^T,   q^ = q / s
+//   s_i = sqrt(w_i),   w_i  mean of W_ii's diagonal
 //
 // s is one number per contact, so the cones and the law are unchanged; r^ and u^ are both in
 // sqrt(J). The diagonal of W^ is about 1, whatever the masses, so Alart-Curnier's rho, the line

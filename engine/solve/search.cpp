@@ -35,9 +35,9 @@ constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
 constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
 constexpr int kHitSolves = 4;                           // that share what a tick's hits may take
-constexpr int kPolishRounds = 3;
-constexpr double kPolishEpsilon = 1e-4;
-constexpr double kQuiet = 1e-3;  // of the problem's speeds: what slips less is about to rest
+constexpr int kPolishRounds = 3;                        // of what is quiet, on to round-off
+constexpr double kPolishEpsilon = 1e-4;                 // epsilon of these rounds
+constexpr double kQuiet = 1e-3;                         // of the problem's speeds: what slips less is about to rest
 
 // The fastest slip of what pushes [m/s].
 double fastestSlip(const ContactProblem& problem, const double* r, const double* u) {
@@ -360,8 +360,8 @@ class Search {
 
   static constexpr double kMostAccuracies = 100;  // of what is too entangled for anything but sweeps
   static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;
-  static constexpr int kPatient = 10;  // times as much of everything, where there is time
-  static constexpr double kSoftestEpsilon = 0.1;
+  static constexpr int kPatient = 10;             // times as much of everything, where there is time
+  static constexpr double kSoftestEpsilon = 0.1;  // the last of kSoftEpsilons
   static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, kSoftestEpsilon};
 
   const ContactProblem& problem_;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSmallEpsilon = 1e-11;  // of w_i: far above round-off, far below what one contact gives
 constexpr int kSmallSteps = 4;           // more are a sign that full steps don't do
-constexpr int kSmallPolishSteps = 2;
+constexpr int kSmallPolishSteps = 2;     // beyond the tolerance, to round-off
 constexpr int kSmallContacts = 3;  // so many only of as many movers: a body on three feet is held more than six-fold
 
 // b becomes the solution of A x = b, by elimination with row pivots. False if a pivot is 0 or not finite.

@@ -4,8 +4,8 @@
 //   u = W r + q,   y_i = w_i r_i - u_i,   w_i the mean of W_ii's diagonal
 //   open   (y_n <= 0)              dr_i = -r_i
 //   stick  (|y_T| <= mu y_n)       (W dr)_i = -u_i
-//   slide                          w_i (I - D) dr_i + D (W dr)_i = -(w_i r_T - s y_T,
-//                                  u_n),   D as in cone.h's SlideDerivative
+//   slide                          w_i (I - D) dr_i + D (W dr)_i = -(w_i r_T - s y_T, u_n)
+//                                  D as in cone.h's SlideDerivative
 //
 // W is stored whole, in velocities per impulse: nothing is scaled, and the warm start's residual costs no more
 // than by the factors of W. Full steps only; what they don't solve is left to contact_solver.h, from the same

@@ -1,8 +1,8 @@
 // squeeze: walls that don't give way and close on what is between them.
 //
-//   r_n > kLargestSqueeze M v    for some contact;   M  the inertia of the heaviest mover [kg],
-//                                                       in the direction in which it moves most;
-//                                                       v  the speeds of the problem (residual.h)
+//   r_n > kLargestSqueeze M v    for some contact
+//   M  the inertia of the heaviest mover, in the direction in which it moves most [kg]
+//   v  the speeds of the problem (residual.h)
 //
 // Jaws with a given motion that close on a rigid body, or a body put where two walls overlap it, have no answer: no
 // velocity obeys both. Impulses of the iterates cancel each other and grow without end, and a residual relative to them

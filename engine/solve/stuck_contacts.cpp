@@ -12,7 +12,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kMostSteps = 3;
+constexpr int kMostSteps = 3;          // each with a set of contacts that hold: a factorisation
 constexpr double kFrictionUsed = 0.5;  // at most, for the step to go on with its shares
 // of corners of pads that contradict each other, as turning by 5 rad/s lets them [m/s]
 constexpr double kPadGive = 1e-5;

@@ -14,9 +14,9 @@ namespace pincer::engine {
 namespace {
 
 constexpr int kVisits = 48000;  // of contacts in a tick: 160 sweeps of the heap of 100 balls, 16 of one of 1000
-constexpr int kFewestSweeps = 4, kMostSweeps = 160;
-constexpr int kRestingSweeps = 2;  // of what was near enough before them: so a heap comes to rest
-constexpr int kBetweenLooks = 4;   // a look at the residual costs half a sweep,
+constexpr int kFewestSweeps = 4, kMostSweeps = 160;  // however many contacts kVisits is shared by
+constexpr int kRestingSweeps = 2;                    // of what was near enough before them: so a heap comes to rest
+constexpr int kBetweenLooks = 4;                     // a look at the residual costs half a sweep,
 constexpr double kWorthALook = 4;  // and a sweep that changed more than so many times what is enough needs none
 
 // inverse = W^-1, rows x rows. Not a number where there is none: such a stop is in no cone.
@@ -148,9 +148,9 @@ void Sweeps::sweep(bool backwards) {
 
 namespace {
 
-// Where  a g_z + b g_p + (a^2 zz + 2 a b zp + b^2 pp) / 2  is least, within bounds: where contacts are
-//                                                          redundant z and p may be any part of r that moves
-// nothing, and what is left of zz and pp is round-off. Nowhere if the sweep's own way would be taken back.
+// Where  a g_z + b g_p + (a^2 zz + 2 a b zp + b^2 pp) / 2  is least, within bounds. Where contacts are redundant
+// z and p may be any part of r that moves nothing, and what is left of zz and pp is round-off. Nowhere if the sweep's
+// own way would be taken back.
 struct LeastEnergy {
   double a = 0, b = 0;
 

@@ -2,12 +2,12 @@
 //
 //   M^ Du = .. + c p,   M^ = M + c c^T m^;     F = -k e - d e',   e = l - target,   l' = c . u
 //
-//   soft   h^2 k <= m/4 and h d <= m/2:   m^ = k h^2/12 + d h/2,    p = -k h (e + h l'/2 + h (t_1
-//                                                                   - t_0)/6 - s/2) - d (h l' - s)
+//   soft   h^2 k <= m/4 and h d <= m/2:   m^ = k h^2/12 + d h/2,
+//          p = -k h (e + h l'/2 + h (t_1 - t_0)/6 - s/2) - d (h l' - s)
 //   stiff  force at the tick's end:       m^ = h d + h^2 k theta,   p = -k h (e + h l' - s) - h d (l' - t_1)
 //
-//   m      1/(c^T M^-1 c), the least inertia that l can feel;  s  the target's way in the tick;
-//                                                                 t_0, t_1  its rate at both ends
+//   m      1/(c^T M^-1 c), the least inertia that l can feel
+//   s      the target's way in the tick;  t_0, t_1  its rate at both ends
 //   theta  1/2, the mean; more where k alone is so stiff that e would ring: what e and h l'
 //          were off by falls by 1/sqrt 3 per tick then
 //

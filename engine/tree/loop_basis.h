@@ -1,11 +1,11 @@
 // loop_basis: the directions that a tree's loops block, and those that they leave, in the
 // scaled space of its factor (sparse_ldl.h).
 //
-//   B = G L^-1 D^-1/2,   B H = [R^T 0]        H = (Q N): Householder's reflections,
-//                                             rows in the order of what is left of them
+//   B = G L^-1 D^-1/2,   B H = [R^T 0]
+//   H = (Q N): Householder's reflections, rows in the order of what is left of them
 //
-//   G   how fast each row of the loops opens, by columns;   Q  spans what is blocked, N what
-//                                                              is free:   N N^T = 1 - Q Q^T
+//   G   how fast each row of the loops opens, by columns
+//   Q   spans what is blocked, N what is free:   N N^T = 1 - Q Q^T
 // A row of which less than 1e-8 is left says nothing new (two of a planar loop's rows in three), or the loop is at a
 // dead centre. There the loops block the direction that is left of it all the same: a tree keeps the number of its
 // freedoms. Source: G. H. Golub, C. F. Van Loan, Matrix Computations, 4th ed., 2013, section 5.4.2 (pivoted QR).

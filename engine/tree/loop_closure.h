@@ -1,7 +1,7 @@
 // loop_closure: joints that close loops in a tree (engine/tree.h, TreeLoop).
 //
-//   c(q) = 0,   G u = dc/dt,   G u' + (dG/dt) u = c''           a row: n . x or m . turn, of J on
-//                                                               a past J on b, in axes of J on b
+//   c(q) = 0,   G u = dc/dt,   G u' + (dG/dt) u = c''
+//   a row: n . x or m . turn, of J on a past J on b, in axes of J on b
 //
 //   point    c = n . (x_a - x_b),    c'' = n . (a_a - a_b - 2 w_b x u),   all at x_a; u = v_a - v_b there
 //   turn     c = m . theta,          c'' = m . (alpha_a - alpha_b - w_b x (w_a - w_b))

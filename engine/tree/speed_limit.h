@@ -1,7 +1,7 @@
 // speed_limit: the most that a tree can get to in a part of a tick that is too long to show how it turns.
 //
-//   |u+|^2 + sum of k e+^2  <=  N^2,     N = (|u|^2 + sum of k e^2)^1/2 + |I|_M^-1 +
-//                                        sum of k^1/2 |s|,     |u|^2 = u^T M(q) u
+//   |u+|^2 + sum of k e+^2  <=  N^2,     |u|^2 = u^T M(q) u
+//   N = (|u|^2 + sum of k e^2)^1/2 + |I|_M^-1 + sum of k^1/2 |s|
 //   I = h (tau - C(q_m, 0)) + sum of c d s
 //
 // N follows from the triangle inequality: the motion's own forces do no work, dampers take some, and springs keep

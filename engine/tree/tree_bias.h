@@ -1,7 +1,7 @@
 // tree_bias: the forces that a tree's motion takes, by Newton and Euler, link by link.
 //
-//   tau = M u' + C,     C = T^T (sum over links of J^T (m (a - g), I alpha + w x I w) -
-//                       what is applied),  a and alpha at u' = 0
+//   tau = M u' + C
+//   C = T^T (sum over links of J^T (m (a - g), I alpha + w x I w) - what is applied),  a and alpha at u' = 0
 //
 // Source: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, section 5.3.
 #pragma once

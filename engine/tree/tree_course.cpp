@@ -149,7 +149,7 @@ void stepRates(const TreeModel& tree, std::span<const double> step, std::span<co
 // Steps of the free course that show how it turns. The base's middle is known,
 // no other places between its start and end.
 int fineSteps(const BaseCourse& base, double h, const TreeCourse& course) {
-  constexpr int kMostSteps = 4;
+  constexpr int kMostSteps = 4;  // of Runge and Kutta's method in a tick, at most
   const auto stands = [](const Motion& m) { return m.v_W.isZero(0) && m.w_W.isZero(0); };
   if (!stands(base.start.motion) || !stands(base.end.motion)) return 1;
   double rate2 = 0;
@@ -163,8 +163,8 @@ int fineSteps(const BaseCourse& base, double h, const TreeCourse& course) {
 void stepByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
                       double h, int step, int steps, TreeCourse& course) {
   const std::array<const TreeBase*, 4> bases{&base.start, &base.mid, &base.mid, &base.end};
-  constexpr std::array kShares{0.0, 0.5, 0.5, 1.0};
-  constexpr std::array kWeights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+  constexpr std::array kShares{0.0, 0.5, 0.5, 1.0};                   // of the step: Runge and Kutta's stages
+  constexpr std::array kWeights{1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};  // of the stages: 4th order
   const double part = h / steps;
   course.old_step = course.step = course.way_free;
   course.old_u = course.u = course.u_free;

@@ -10,7 +10,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kNobody = -1;
+constexpr int kNobody = -1;  // a coordinate that follows none
 
 using Columns = std::set<int>;  // in ascending order
 

@@ -13,8 +13,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kLargest = std::numeric_limits<double>::max();
-constexpr double kFarthestShape = 1e3;  // from its body's origin [m]
+constexpr double kLargest = std::numeric_limits<double>::max();  // no limit; or what isn't finite, out of any range
+constexpr double kFarthestShape = 1e3;                           // from its body's origin [m]
 
 void checkShape(const std::string& body, const ColliderSpec& shape) {
   const std::string name = fmt::format("{}.{}", body, shape.name);
@@ -42,7 +42,7 @@ std::vector<double> massesOf(const BodySpec& spec, double mass) {
     given += shape.mass;
     if (shape.mass == 0) volume += volumeOf(shape.shape);
   }
-  constexpr double kRoundOff = 1e-9;
+  constexpr double kRoundOff = 1e-9;  // of the mass: sums of numbers that a person wrote
   const double left = mass - given;
   const bool fits = volume > 0 ? left > 0 : std::abs(left) <= kRoundOff * mass;
   if (!fits)

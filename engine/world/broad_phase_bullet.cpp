@@ -60,7 +60,7 @@ struct BroadPhase::Tree {
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
       const BodyModel& body = model.bodies[i];
       if (!isBounded(body)) continue;
-      constexpr int kDynamic = 1, kStatic = 2;
+      constexpr int kDynamic = 1, kStatic = 2;  // Bullet's groups, a bit each
       numbers[i] = static_cast<int>(i);
       const btVector3 apart(1e3 * static_cast<double>(i), 0, 0);  // a pair of all with all would be found otherwise
       proxies[i] = bullet.createProxy(apart, apart, 0, &numbers[i], body.dynamic ? kDynamic : kStatic,

@@ -33,7 +33,7 @@ double kineticEnergyOf(const WorldModel& model, const WorldState& state, std::si
 }  // namespace
 
 void chargeQuery(const ColliderModel& a, const ColliderModel& b, WorldScratch& scratch) {
-  constexpr std::int64_t kOfSphere = 200, kOfSolids = 5000;
+  constexpr std::int64_t kOfSphere = 200, kOfSolids = 5000;  // multiplications of a query
   const bool has_sphere =
       std::holds_alternative<contact::Sphere>(a.shape) || std::holds_alternative<contact::Sphere>(b.shape);
   charge(has_sphere ? kOfSphere : kOfSolids, scratch);

@@ -2,18 +2,14 @@
 // velocity and biases. (Jacobians: islands.h.)
 //
 // Biases (the solver makes u + mu |u_T| e_n lie in K*, u including the bias b):
-//   open, not touching before    b_n = phi_0 / h                 so that it lands exactly, phi_0
-//                                                                the gap at the start of the tick
-//   touching before              b_n = 0.2 phi / h + 1/2 dn/dt h . v   drift correction, and the turn
-//                                                                      of the normal from the middle
-//                                                                of the tick to its end (that makes
-//                                                                curved contacts second order)
-//   stuck                        b_T = 0.5 (d_T + h u_T / 2) / h   d_T: how far the two have slid since
-//                                                                  they stuck, u_T: how fast they did at
-//                                                                the start of the tick. d_T is the integral of
-//                                                                the slip velocity, not the distance of two
-//                                                                material points: that grows by R (w h)^3 / 24
-//                                                                per tick in pure rolling, and would brake it
+//   open, not touching before    b_n = phi_0 / h                      lands exactly
+//   touching before              b_n = 0.2 phi / h + 1/2 dn/dt h . v  drift correction, and the turn of the normal
+//                                from the middle of the tick to its end, which makes curved contacts second order
+//   stuck                        b_T = 0.5 (d_T + h u_T / 2) / h
+//   phi_0  the gap at the start of the tick [m];  d_T  how far the two have slid since they stuck [m];  u_T  how fast
+//          they did at the start of the tick [m/s]
+// d_T is the integral of the slip velocity, not the distance of two material points: that grows by R (w h)^3 / 24 per
+// tick in pure rolling, and would brake it.
 // A correction pushes apart with at most kLargestCorrection, so that deep overlap doesn't explode; between bodies
 // without joints with at most kDeepSpeed: deeper overlap is undone by moving them (push_out.h), which leaves no
 // velocity behind. Torsion and rolling stick likewise, by the angles that a has turned past b. What resists

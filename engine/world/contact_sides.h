@@ -1,8 +1,8 @@
 // contact_sides: what a contact is to what moves on its two sides: the rows of
 // A, by which W = A A^T (solve/mobility.h).
 //
-//   of a body   A_k = sign [ n_k^T / sqrt(m),  ((arm x n_k)^T F) ],  F F^T = I^-1 in W;   of rows that turn
-//                                                                    (torsion, rolling)  sign radius axis_k^T F
+//   of a body   A_k = sign [ n_k^T / sqrt(m),  ((arm x n_k)^T F) ],  F F^T = I^-1 in W
+//               of rows that turn (torsion, rolling)  sign radius axis_k^T F
 //   of a point  A_k = sign n_k^T diag(m_eff)^-1/2 in the axes of its coupling;
 //               of torsion  sign radius inverse_twist^1/2
 //

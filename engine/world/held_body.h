@@ -1,11 +1,11 @@
 // held_body: a body that one pivot or slider holds to what never moves. It has one coordinate, and
 // moves as that coordinate's equation says.
 //
-//   I th'' = m n . (r x g) - d th'  (pivot),    m th'' = m n . g - d th'  (slider),    th' = n . (L + r x m
-//                                                                         v) / I  or  n . v  at the start
+//   I th'' = m n . (r x g) - d th'  (pivot),    m th'' = m n . g - d th'  (slider)
+//   th' = n . (L + r x m v) / I  or  n . v  at the start
 //
-//   n  the joint's axis;  r  from the pivot to the centre of mass [m];  I  about the axis [kg m^2];  d  the
-//                                                                          joint's damping;  L, v  of the body
+//   n  the joint's axis;  r  from the pivot to the centre of mass [m];  I  about the axis [kg m^2]
+//   d  the joint's damping;  L, v  of the body
 //
 // Without contact that is solved to round-off (motion/one_freedom.h). Contacts see the velocity that it leads to and
 // one column of F (joints.h): (n x r, n)/sqrt(I') or (n, 0)/sqrt(I'), I' = I c h/(1 - exp(-c h)), c = d/I: of an

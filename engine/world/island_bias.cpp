@@ -14,16 +14,16 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kNormalRowWeight = 10;
-constexpr double kInside = -1e-9;  // of the cone's radius: what is further in sticks
+constexpr double kNormalRowWeight = 10;  // beside 1 of tangential rows: gaps come first
+constexpr double kInside = -1e-9;        // of the cone's radius: what is further in sticks
 // contradictions between biases below this are below the solver's tolerance [m/s]
 constexpr double kNegligible = 1e-11;
-constexpr double kConverged = 1e-10;  // of |A^T b|, squared: 1e-5
-constexpr double kConsistent = 1e-6;  // of what is asked for: what is left then is the ridge's
-constexpr int kMostSteps = 40;        // of conjugate gradients
-constexpr int kFewFitted = 200;       // for which so many may be taken; beyond,
-constexpr int kFitVisits = 1500;      // of contacts, but
-constexpr int kFewestSteps = 3;
+constexpr double kConverged = 1e-10;             // of |A^T b|, squared: 1e-5
+constexpr double kConsistent = 1e-6;             // of what is asked for: what is left then is the ridge's
+constexpr int kMostSteps = 40;                   // of conjugate gradients
+constexpr int kFewFitted = 200;                  // for which so many may be taken; beyond,
+constexpr int kFitVisits = 1500;                 // of contacts, but
+constexpr int kFewestSteps = 3;                  // however many contacts there are
 constexpr std::int64_t kPerContactFitted = 200;  // multiplications of a step
 
 double unitOfRow(const Contact& c, int k) { return k >= kTorsionRow ? radiusOf(c, k) : 1; }
@@ -91,7 +91,7 @@ class BiasFit {
  private:
   // With a ridge far below what any contact sees.
   void solveDirectly(MoverMatrix& matrix) {
-    constexpr double kStiff = 1e8;
+    constexpr double kStiff = 1e8;  // over the least weight of a contact
     double least = std::numeric_limits<double>::infinity();
     weighContacts(problem_, memory_);
     for (int i = 0; i < problem_.contactCount(); ++i)

@@ -14,7 +14,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr char kFarSide = 1;
+constexpr char kFarSide = 1;  // mark of a body that hangs on the joint
 
 bool isFree(const WorldModel& model, int body) { return body >= 0 && model.bodies[body].dynamic; }
 

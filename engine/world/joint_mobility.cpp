@@ -49,7 +49,7 @@ class Basis {
   int count() const { return count_; }
 
  private:
-  static constexpr double kDependent = 1e-8;
+  static constexpr double kDependent = 1e-8;  // of its length: what is left of a row that the others imply
   double dot(const double* a, const double* b) const {
     double sum = 0;
     for (int i = 0; i < size_; ++i) sum += a[i] * b[i];

@@ -14,7 +14,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kRowsPerCoordinate = 3;
+constexpr int kRowsPerCoordinate = 3;  // one of each JointRowKind
 // times this part of the tick: what gets to its stop so late may still get there in it
 constexpr double kLateAtStop = 1.5;
 constexpr double kAtHit = 1e-9;    // in an impact: what is left of the root [m, rad]

@@ -1,12 +1,12 @@
 // joints: pivots, sliders, balls and welds between two bodies, or a body and the
 // world, eliminated from the contact problem.
 //
-//   G v = 0,   G of one row per direction that the joint blocks;   a row: n . (v_a + w_a x rho_a - v_b
-//                                                                  - w_b x rho_b) + m . (w_a - w_b)
-//   lambda = -A^-1 (G v_free + b),   A = G M^-1 G^T + R          impulses of the joints of one
-//                                                                group without contact [N s, N m s]
-//   F = S N L^-T,   M^-1 = S S^T,   G S N = 0,   N^T N = 1,   L L^T = 1 + sum d d^T / R,   d
-//                                                             = N^T S^T g of a damper's row g
+//   G v = 0,   G of one row per direction that the joint blocks
+//     a row: n . (v_a + w_a x rho_a - v_b - w_b x rho_b) + m . (w_a - w_b)
+//   lambda = -A^-1 (G v_free + b),   A = G M^-1 G^T + R
+//     impulses of the joints of one group without contact [N s, N m s]
+//   F = S N L^-T,   M^-1 = S S^T,   G S N = 0,   N^T N = 1,   L L^T = 1 + sum d d^T / R
+//     d = N^T S^T g of a damper's row g
 //
 //   F      factor of the inverse mass that contacts see: F F^T = M^-1 - M^-1 G^T A^-1 G M^-1. A group is
 //          one mover of the contact problem (engine/solve), with as many freedoms as F has columns: at

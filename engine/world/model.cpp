@@ -149,7 +149,7 @@ int shapeBits(const WorldModel& model) {
 
 // Of the whole scene; the fewest are those of a hand-sized one.
 int contactCapacity(const WorldModel& model) {
-  constexpr std::int64_t kFewest = 64, kPerPoint = 8;
+  constexpr std::int64_t kFewest = 64, kPerPoint = 8;  // contacts: of a scene without bodies, and of each point
   std::int64_t sum = kFewest + kPerPoint * std::ssize(model.points);
   for (const ColliderModel& c : model.colliders) sum += model.bodies[c.body].dynamic ? contactsOf(c.shape) : 0;
   return static_cast<int>(std::min<std::int64_t>(sum, kMostContacts));

@@ -11,7 +11,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kPushSweeps = 10;
+constexpr int kPushSweeps = 10;  // over all overlaps in a tick; the rest is for the next ones
 
 bool isFree(const WorldModel& model, const Side& side) {
   if (side.kind != SideKind::kBody) return false;

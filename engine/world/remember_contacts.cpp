@@ -4,6 +4,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/rest.h"
+#include "pincer/engine/world/stick_bias.h"
 
 namespace pincer::engine {
 namespace {
@@ -50,7 +51,6 @@ bool sticks(const ContactMemory& m) { return m.active && !m.sliding; }
 bool mayStick(const ContactMemory& m) { return sticks(m) || (m.open_ticks > 0 && m.open_ticks < kOpenTicks); }
 
 bool isStuckAlike(int shape_bits, const ContactMemory& x, const ContactMemory& y) {
-  constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals
   return isOfSameTwo(shape_bits, x.id, y.id) && mayStick(y) && x.n_W.dot(y.n_W) > kSamePlane;
 }
 

@@ -1,7 +1,7 @@
 // stick_bias: makes what the sticking contacts of one pair ask for the motion of a rigid body.
 //
-//   minimise over xi  sum_i  w_n^2 (n_i . xi_i - a_in)^2 + |P_i xi_i - a_iT|^2 + (e_t n_i .
-//                            Omega - a_it)^2,   xi_i = V + Omega x rho_i
+//   minimise over xi  sum_i  w_n^2 (n_i . xi_i - a_in)^2 + |P_i xi_i - a_iT|^2 + (e_t n_i . Omega - a_it)^2
+//   xi_i = V + Omega x rho_i
 //
 //   a_i   velocity of a relative to b at contact i that its biases ask for: along the normal to correct the gap, along
 //         the tangents (with torsion or rolling radius, about the axes as well) to undo its stick offset [m/s]
@@ -20,6 +20,8 @@
 #include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
+
+constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals of contacts of one flat face
 
 // Of all pairs with two or more sticking contacts in different planes: fits bias_C's tangential rows
 // and offset_C of scratch.contacts (sorted by id), and corrects scratch.q. Likewise of points that

@@ -184,7 +184,7 @@ class Tick {
 
   // The hits before were those of the same pair, and no time went by: it lands.
   bool isRepeated(double t) {
-    constexpr int kMostRepeats = 3;
+    constexpr int kMostRepeats = 3;  // hits of one pair at one moment (decision 11)
     const ImpactPair pair = scratch_.impact_pairs.front(), last = std::exchange(last_hit_, pair);
     const bool is_same = !(t > kShortestPart * model_.options.h) && pair.a == last.a && pair.b == last.b;
     repeats_ = is_same ? repeats_ + 1 : 0;
@@ -194,8 +194,8 @@ class Tick {
   // Attempts the part up to the hit. What fingers push goes another way there than over the whole part: a hit
   // that comes sooner on that way cuts it again.
   double cutAt(double t) {
-    constexpr int kMostCuts = 4;
-    constexpr double kSooner = 0.999, kSameTime = 1e-14;
+    constexpr int kMostCuts = 4;                          // of one part of a tick: each is a solve
+    constexpr double kSooner = 0.999, kSameTime = 1e-14;  // of the time of the hit: a gain, and round-off
     attempt(t);
     for (int n = 0; n < kMostCuts && !isSpent() && hitsStop(); ++n) {
       const double again = timeOfImpact(model_, state_, scratch_);

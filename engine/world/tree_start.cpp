@@ -37,7 +37,7 @@ constexpr double kIsClosed = 1e-12;  // [m, rad]
 // hardly the one that `kept` is the column of.
 double closeTree(const TreeModel& tree, const TreeBase& base, int passes, int kept, std::span<double> q,
                  std::span<double> u) {
-  constexpr double kHeavy = 1e12;
+  constexpr double kHeavy = 1e12;  // times its inertia: it hardly moves
   TreePlace place(tree);
   placeLinks(tree, base, q, place);
   std::vector<CompositeInertia> composite(tree.links.size());

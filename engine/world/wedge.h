@@ -5,8 +5,8 @@
 //                                                   and any pull is held by squeezing enough
 //   (f_1 + f_2) . b < 0.1 * 2 sin(alpha) S          it holds the point by squeezing: mu <- tan(alpha) / 2
 //
-//   n_i, f_i   normals and forces of the last tick;  S  the lesser normal force [N];  b = (n_1
-//                                                       + n_2)/|n_1 + n_2|, out of the groove
+//   n_i, f_i   normals and forces of the last tick;  S  the lesser normal force [N]
+//   b = (n_1 + n_2)/|n_1 + n_2|,  out of the groove
 //
 // Rigid walls that lock may squeeze by any amount, whatever pressed the point in: a problem with many answers, of which
 // the one that never lets go is none that skin and plastic know. There the squeeze is what the point was pressed in

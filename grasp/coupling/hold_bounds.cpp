@@ -19,7 +19,7 @@ Mat3 heldArm(const ArmPort& arm, double tick) {
   A(1, 0) = -arm.hand_stiffness / arm.mass;
   A(1, 1) = -arm.damping / arm.mass;
   A(1, 2) = -1 / arm.mass;
-  constexpr int kSquarings = 10, kTerms = 12;
+  constexpr int kSquarings = 10, kTerms = 12;  // of the exponential: |A tick| / 2^10 to the 12th is round-off
   const Mat3 small = A * std::ldexp(tick, -kSquarings);
   Mat3 sum = Mat3::Identity(), term = Mat3::Identity();
   for (int i = 1; i <= kTerms; ++i) {

@@ -14,14 +14,14 @@
 namespace pincer::grasp {
 namespace {
 
-constexpr double kFlat = 1e-9;          // singular values, and reaches, below this part of the largest don't count
-constexpr double kOptimal = 1e-12;      // of a column's price, relative to W's size
-constexpr double kPerturbation = 1e-9;  // of the right-hand side, relative: without it every pivot is degenerate
-constexpr double kArtificial = 1e4;     // cost of what isn't there
-constexpr int kMostPivots = 500;
-constexpr int kMostTurns = 200;
-constexpr int kRandomDirections = 52;
-constexpr int kVolumeDirections = 2000;
+constexpr double kFlat = 1e-9;           // singular values, and reaches, below this part of the largest don't count
+constexpr double kOptimal = 1e-12;       // of a column's price, relative to W's size
+constexpr double kPerturbation = 1e-9;   // of the right-hand side, relative: without it every pivot is degenerate
+constexpr double kArtificial = 1e4;      // cost of what isn't there
+constexpr int kMostPivots = 500;         // of the simplex method
+constexpr int kMostTurns = 200;          // of a descent from one direction
+constexpr int kRandomDirections = 52;    // to start from, beside the twelve along the axes
+constexpr int kVolumeDirections = 2000;  // that the volume is a mean over
 
 // Directions that fill the sphere of any dimension evenly enough: normal deviates of an additive
 // recurrence (M. Roberts 2018, R_d sequence).
@@ -60,8 +60,8 @@ Eigen::MatrixXd spanOf(const std::vector<Eigen::Matrix<double, 6, 4>>& columns, 
   return svd.matrixU().leftCols(rank);
 }
 
-// max t  subject to  sum_j l_j w_j - t d = 0,  sum_j l_j + s = 1,  l, t, s >= 0: a revised simplex with
-//                                                                  the basis solved anew per pivot.
+// max t  subject to  sum_j l_j w_j - t d = 0,  sum_j l_j + s = 1,  l, t, s >= 0:
+// a revised simplex with the basis solved anew per pivot.
 class RayProgramme {
  public:
   RayProgramme(const Eigen::VectorXd& d, double size)

@@ -34,7 +34,7 @@ void checkCoupling(const FingerModel& finger) {
 }
 
 void checkTaxels(const FingerModel& finger) {
-  constexpr int kFewest = 2, kMost = 64;
+  constexpr int kFewest = 2, kMost = 64;  // taxels a side: forces are shared between neighbours
   const PressureGrid& grid = finger.taxels;
   if (grid.rows == 0 && grid.columns == 0) return;
   for (const int n : {grid.rows, grid.columns}) {

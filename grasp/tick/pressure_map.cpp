@@ -9,7 +9,7 @@
 namespace pincer::grasp {
 namespace {
 
-constexpr int kRings = 3, kSpokes = 8;
+constexpr int kRings = 3, kSpokes = 8;  // 24 points stand for a patch
 constexpr double kShare = 1.0 / (kRings * kSpokes);
 
 // Radii of the rings that halve each third of the load, over their mean: sqrt(m), and sqrt(1
@@ -48,7 +48,7 @@ Cell cellOf(double x, double pitch, int count) {
   const double last = count - 1, at = x / pitch + last / 2;
   const double inside = std::clamp(at, 0.0, last);
   const int index = std::min(static_cast<int>(inside), count - 2);
-  constexpr double kRoundOff = 1e-9;
+  constexpr double kRoundOff = 1e-9;  // of a taxel's pitch
   return {index, inside - index, std::abs(at - inside) > kRoundOff};
 }
 

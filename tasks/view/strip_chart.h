@@ -8,7 +8,7 @@ namespace pincer::tasks {
 
 class StripChart {
  public:
-  static constexpr double kSeconds = 8;
+  static constexpr double kSeconds = 8;  // that the chart shows [s]
 
   // Keeps the last kSeconds of one quantity per name in `lines`; a name may be empty.
   // `dead`: of a value, less counts as nothing, so that round-off isn't drawn over the whole height [unit].

@@ -36,13 +36,14 @@ std::vector<std::string> matches(const std::string& text, const std::regex& patt
   return found;
 }
 
-// Commands of a page in their order: lines of code blocks and code within lines, but
-// for those with a placeholder in capitals.
+// Commands of a page in their order: lines of code blocks, with those that a backslash continues, and code within
+// lines; but for those with a placeholder in capitals.
 std::vector<std::string> commandsOf(const std::string& page) {
   static const std::regex pattern(R"((?:\n    |\n\$ |`)(?:build/)?(pincer [a-z][^`#\n]*))"),
       placeholder(R"(\b[A-Z]{2,}\b|\.\.\.)");
   std::vector<std::string> commands;
-  for (std::string command : matches('\n' + readFile(kSource / page), pattern)) {
+  const std::string text = std::regex_replace(readFile(kSource / page), std::regex(R"(\\\n\s*)"), "");
+  for (std::string command : matches('\n' + text, pattern)) {
     command.erase(command.find_last_not_of(" &") + 1);
     if (!std::regex_search(command, placeholder)) commands.push_back(command);
   }
@@ -124,24 +125,29 @@ TEST_P(DocsPage, NamesFilesThatAreThere) {
   }
 }
 
-// Tables and blocks of code are as wide as what they show; pages of the reference are made by the program.
+// Tables are as wide as what they show; pages of the reference are made by the program.
 TEST_P(DocsPage, KeepsItsLinesTo110Characters) {
   if (GetParam().starts_with("docs/reference/")) return;
   std::istringstream text(readFile(kSource / GetParam()));
-  bool in_code = false;
   int number = 0;
   for (std::string line; std::getline(text, line);) {
     ++number;
-    if (line.starts_with("```")) in_code = !in_code;
     const std::size_t begin = line.find_first_not_of(' ');
-    const bool is_prose = !in_code && begin != line.npos && begin < 4 && line[begin] != '|';
+    if (begin == line.npos || line[begin] == '|') continue;
     // a byte of UTF-8 that begins no character
     const auto continues = [](unsigned char c) { return (c & 0xc0) == 0x80; };
     const auto length = static_cast<long>(line.size()) - std::count_if(line.begin(), line.end(), continues);
-    if (is_prose) {
-      EXPECT_LE(length, 110) << GetParam() << ":" << number << ": " << line.substr(0, 60);
-    }
+    EXPECT_LE(length, 110) << GetParam() << ":" << number << ": " << line.substr(0, 60);
   }
+}
+
+// Guides and explanations are true today; how it came about stands in the journal and the changelog.
+TEST_P(DocsPage, TellsNoHistory) {
+  if (GetParam().starts_with("docs/journal/") || GetParam() == "docs/changelog.md") return;
+  static const std::regex history(
+      "(used to be|formerly|previously|[Ss]ince then|it once |once was|turned out to|in the past)");
+  for (const std::string& words : matches(readFile(kSource / GetParam()), history))
+    ADD_FAILURE() << GetParam() << " tells history: " << words;
 }
 
 std::string pageTestName(const testing::TestParamInfo<std::string>& info) {
@@ -149,6 +155,47 @@ std::string pageTestName(const testing::TestParamInfo<std::string>& info) {
   std::replace_if(
       name.begin(), name.end(), [](unsigned char c) { return !std::isalnum(c); }, '_');
   return name;
+}
+
+// A decision tells what holds today; how it came about stands in docs/journal.
+TEST(Decisions, AreHalfAPage) {
+  constexpr int kHalfAPage = 300;  // words, of which a page of 11 points has some 600
+  int found = 0;
+  for (const auto& page : fs::directory_iterator(kSource / "docs/decisions")) {
+    std::istringstream text(readFile(page.path()));
+    int words = 0;
+    for (std::string word; text >> word;)  // a table's bars are none
+      words += std::any_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c); });
+    EXPECT_LE(words, kHalfAPage) << page.path();
+    ++found;
+  }
+  EXPECT_GE(found, 22);
+}
+
+// From docs/architecture.md to the equation, or the rule, in two hops: the page's row, then the file.
+TEST(TwelveQuantities, StandInTheFilesThatTheirRowsName) {
+  struct Quantity {
+    const char *row, *file, *holds;
+  };
+  const std::string page = readFile(kSource / "docs/architecture.md");
+  for (const Quantity& q : {Quantity{"friction cone", "engine/solve/cone.h", "|r_T| <= mu r_n"},
+                            {"contact memory", "engine/state.h", "struct ContactMemory"},
+                            {"order of a tick", "engine/world/stages.h", "predict"},
+                            {"coupling's integration", "engine/model.h", "enum class AxisForm"},
+                            {"patch equation", "contact/surface/patch.h", "S(u,v) ="},
+                            {"pad place", "grasp/pad_place.h", "Vec2 placeOnPad("},
+                            {"gate limits", "devices/gate/force_gate.h", "struct GateLimits"},
+                            {"staircase rule", "tasks/lab/study/staircase.h", "p^n = 1/2"},
+                            {"participant's limits", "tasks/lab/participants/body.h", "[m]"},
+                            {"session table", "tasks/run/session/columns.h", "ColumnRange"},
+                            {"scene key", "docs/reference/scene.md", "tick"},
+                            {"device frame", "devices/usb/frame.h", "CRC-16"}}) {
+    const std::size_t begin = page.find(std::string("\n| ") + q.row + " |");
+    ASSERT_NE(begin, page.npos) << q.row;
+    const std::string row = page.substr(begin + 1, page.find('\n', begin + 1) - begin - 1);
+    EXPECT_NE(row.find('`' + std::string(q.file) + '`'), row.npos) << row;
+    EXPECT_NE(readFile(kSource / q.file).find(q.holds), std::string::npos) << q.file << " lacks " << q.holds;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DocsPage, testing::ValuesIn(pages()), pageTestName);

@@ -217,7 +217,7 @@ void UsbfsDevice::pump() {
   while (!waiting_.empty() && halted_.count(kIn) == 0 && completeIn(waiting_.front())) waiting_.pop_front();
 }
 
-// Whether the transfer ended.
+// True if the transfer ended.
 bool UsbfsDevice::completeIn(Urb urb) {
   HeldPacket packet;
   while (true) {

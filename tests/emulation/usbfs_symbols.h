@@ -93,7 +93,7 @@ int open64(const char* path, int flags, ...) {
   va_end(arguments);
   return pincer::emulation::openAny("open64", path, flags, mode);
 }
-// What a fortified open() really calls: Debian's libusb opens the device's node with it.
+// The function that a fortified open() really calls: Debian's libusb opens the device's node with it.
 int __open_2(const char* path, int flags) { return pincer::emulation::openAny("open", path, flags, 0); }
 int __open64_2(const char* path, int flags) { return pincer::emulation::openAny("open64", path, flags, 0); }
 

@@ -27,7 +27,7 @@ std::set<std::string> forbidden() {
   return names;
 }
 
-// What `nm` prints of the symbols that the objects of an archive take from elsewhere.
+// The symbols, as `nm` prints them, that the objects of an archive take from elsewhere.
 std::string undefinedSymbols(const std::string& archive) {
   const std::unique_ptr<FILE, int (*)(FILE*)> nm(popen(("nm -A --undefined-only " + archive).c_str(), "r"), pclose);
   std::string text;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -121,7 +122,7 @@ TEST(House, EveryIncludeBeginsWithPincer) {
 
 const std::set<std::string> kDoors = {"contact", "engine", "grasp", "tasks/run"};
 
-// What a user includes: the headers that stand directly in a library's folder. All below is private.
+// True of headers that a user includes: those directly in a library's folder. All below is private.
 bool isPublic(const std::string& header) {
   const fs::path path(header);
   const std::string folder = path.parent_path();
@@ -328,6 +329,23 @@ TEST(House, LinesOfCodeKeepTo120Columns) {
       for (const std::string& line : widerThan(120, file)) ADD_FAILURE() << file << ": " << line;
     }
   }
+}
+
+// A comment has a subject: "Returns the ...", "True if ...", "The gap along the normal".
+TEST(House, CommentsBeginWithTheirSubject) {
+  int comments = 0;
+  for (const std::string folder : {"contact", "engine", "grasp", "devices", "tasks", "tests"}) {
+    for (const fs::path& file : sourcesUnder(fs::path(PINCER_SOURCE_DIR) / folder)) {
+      for (const std::string& line : linesOf(file)) {
+        const auto begin = line.find("// ");
+        if (begin == line.npos || line.find_first_not_of(' ') != begin) continue;
+        ++comments;
+        for (const char* first : {"What ", "Whether ", "Those that ", "Of what "})
+          EXPECT_NE(line.compare(begin + 3, std::strlen(first), first), 0) << file << ": " << line;
+      }
+    }
+  }
+  EXPECT_GT(comments, 5'000);  // of about 10,000
 }
 
 TEST(House, NothingElseStandsAtTheTop) {

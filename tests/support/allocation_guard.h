@@ -8,7 +8,7 @@ namespace pincer::tests {
 // ThreadSanitizer, which own the allocator.
 std::int64_t allocationCount();
 
-// Whether this build can count.
+// True if this build can count.
 bool allocationsAreCounted();
 
 }  // namespace pincer::tests

@@ -40,7 +40,7 @@ class ShellOracle {
   // From `C` to the patches [m].
   double distance(const Vec3& C) const;
 
-  // What is wrong with the answer for a finger of radius `r`; empty if nothing is. The answer is right
+  // The fault of the answer for a finger of radius `r`; empty if it has none. The answer is right
   // where it solves one of the three equations; a finger that touches nothing may also be given the
   // nearest place, whatever the normal there.
   std::string complaint(const Vec3& C, double r, const contact::SurfaceContact& answer) const;

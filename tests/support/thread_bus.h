@@ -14,7 +14,7 @@
 
 namespace pincer::tests {
 
-// What is plugged in; set from any thread.
+// The devices that are plugged in; set from any thread.
 struct ThreadBusPlugs {
   std::vector<std::shared_ptr<emulation::UsbGadget>> gadgets;
   std::atomic<unsigned> plugged{~0u};  // bit per gadget

@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <memory>
-#include <numbers>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/math.h"
 #include "pincer/devices/haply/haply_host.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/devices_calibrate.h"
@@ -89,7 +89,6 @@ void align(const CalibrateArguments& arguments, DeviceCalibration& calibration) 
 // The drift of an aligned grip's yaw is what its turn of now is off about the vertical.
 void takeOutDrift(const CalibrateArguments& arguments, DeviceCalibration& calibration) {
   constexpr double kMostTilt = 0.2;  // of a hand that holds it as in the scene [rad]
-  constexpr double kDegree = std::numbers::pi / 180;
   HaplyArmSettings settings = haplyArmOf(calibration, arguments.grip);
   settings.frame.grip_yaw = 0;
   const auto [yaw, tilt] = devices::haply::gripDrift(stanceOf(arguments, settings).q_DF, turnOf(arguments.undrift));

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/math.h"
 #include "pincer/devices/haply/haply_host.h"
 #include "pincer/tasks/app/app.h"
 #include "pincer/tasks/app/commands/devices_calibrate.h"
@@ -132,7 +132,6 @@ int touchWith(HaplyHost& host, const CalibrateArguments& arguments, const ArmBas
   const std::vector<HandleTouch> touches = takeTouches(host, X_WA, scene.model.mounts[1].X_WD);
   if (interruptFlag()) return kExitInterrupted;
   const TouchFinding found = findBase(touches, scene.model.mounts[1].X_WD.p);
-  constexpr double kDegree = std::numbers::pi / 180;
   print("knobs {:.1f} mm apart; the places fit within {:.2f} mm (rms), the worst, {}, within {:.2f} mm\n",
         1e3 * found.distance, 1e3 * found.residual, found.worst + 1, 1e3 * found.worst_error);
   print("sure of the offset within {:.2f} mm, of the turn within {:.2f} degrees\n", 1e3 * found.sure_offset,

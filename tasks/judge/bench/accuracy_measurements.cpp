@@ -21,7 +21,7 @@ using contact::SurfaceNet;
 using contact::SurfaceVariant;
 
 std::vector<Record> sphereErrors(int level, double position_bound) {
-  constexpr double kR = 0.02, kDepth = 0.002;
+  constexpr double kR = 0.02, kDepth = 0.002;  // [m]
   const auto mesh = SmoothMesh::build(contact::icosphere(kR, level));
   Random random(1);
   double position = 0, direction = 0;
@@ -38,7 +38,7 @@ std::vector<Record> sphereErrors(int level, double position_bound) {
 
 // R 25 mm, 24 facets, once around at constant depth, away from the rims.
 std::vector<Record> cylinderErrors() {
-  constexpr double kR = 0.025, kDepth = 0.0015;
+  constexpr double kR = 0.025, kDepth = 0.0015;  // [m]
   const auto mesh = SmoothMesh::build(contact::cylinder(kR, 0.03, 24, 6));
   const SweepPlane plane{Vec3::UnitZ(), 0.003};
   const FingerPath path = circleAround(plane, kR + kBenchFinger - kDepth);
@@ -63,7 +63,7 @@ struct RoundPlace {
 // maximum alone would pass a contact that halts.
 std::vector<Record> speedsAround(const contact::TriangleMesh& mesh, const std::vector<RoundPlace>& places, double from,
                                  double slowest_bound, double fastest_bound) {
-  constexpr double kDepth = 0.0015;
+  constexpr double kDepth = 0.0015;  // [m]
   constexpr int kSteps = 5000;
   const auto surface = SmoothMesh::build(mesh);
   double slowest = std::numeric_limits<double>::infinity(), fastest = 0;
@@ -97,7 +97,7 @@ std::vector<Record> flatSpeeds(int rows) {
 // A long quad of a cone is no rectangle: its diagonal's middle isn't half way around,
 // and no edge knows that. Refine such meshes.
 std::vector<Record> coneSpeeds(int rows, double off) {
-  constexpr double kBottom = 0.03, kTaper = 0.015, kHeight = 0.04;
+  constexpr double kBottom = 0.03, kTaper = 0.015, kHeight = 0.04;  // [m]
   std::vector<Vec2> profile = {{0, -kHeight / 2}};
   for (int k = 0; k <= rows; ++k)
     profile.push_back({kBottom - kTaper * k / rows, kHeight * (static_cast<double>(k) / rows - 0.5)});

@@ -140,7 +140,7 @@ std::vector<Record> frictionRows(MeasureContext&) {
 // it a second finger with friction .5, which feels sqrt(1 + mu^2) as much where nothing holds it. A snag is a force
 // above twice that, but in a groove that locks: rigid walls hold there what is pulled along them or out, by any force.
 std::vector<Record> dragOverPart(const TriangleMesh& triangles, MeasureContext& context) {
-  constexpr double kMu = 0.5;
+  constexpr double kMu = 0.5;  // [-]
   constexpr int kTicks = 20000;
   const Mesh part = meshOf(triangles);
   const Vec3 above(0, 0, 1.2 * part.surface->boundingRadius());

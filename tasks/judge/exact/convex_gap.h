@@ -1,8 +1,8 @@
 // convex_gap: how far two convex solids are apart, or how deep they overlap, by
 // trying every direction that may be the best.
 //
-//   gap(n) = min over a of n . p - max over b of n . p,   phi = max over unit n of gap(n)
-//                                                         [m]          n out of b towards a
+//   gap(n) = min over a of n . p - max over b of n . p [m],   n out of b towards a
+//   phi = max over unit n of gap(n)
 //
 // gap has kinks at the normals of flat faces, and along the circle of directions across each straight edge; it is
 // smooth elsewhere. Every maximum is therefore one of four kinds, and each is tried: the faces' normals; the cross

@@ -65,7 +65,7 @@ double room(const std::vector<HalfPlane>& limits, double H) {
 bool semicircularArchStands(int voussoirs, double thickness) {
   const std::vector<HalfPlane> limits = thrustLimits(voussoirs, thickness);
   double low = 0, high = M_PI * thickness;
-  constexpr double kGolden = 0.6180339887498949;
+  constexpr double kGolden = 0.6180339887498949;  // the golden section
   for (int i = 0; i < 100; ++i) {
     const double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
     if (room(limits, a) < room(limits, b))

@@ -10,8 +10,8 @@ namespace pincer::exact {
 // tension: the arch stands if and only if some thrust runs inside it (safe theorem). By symmetry the thrust at the
 // crown is horizontal, H at the height P/H. At the joint at angle f_k from the crown the thrust is (H, V_k), V_k the
 // weight above, and moments about the centre put it at the radius
-//   rho_k = (P + M_k)/(V_k sin f_k + H cos f_k),   M_k = sum of x_j W_j above,   and it
-//                                                  must be  r_i <= rho_k <= r_e  for all k
+//   rho_k = (P + M_k)/(V_k sin f_k + H cos f_k),   M_k = sum of x_j W_j above
+//   and it must be  r_i <= rho_k <= r_e  for all k
 // (at the crown too, if a joint is there). These are half-planes in (H, P); the least t is where they cease to have a
 // common point. A voussoir with flat faces (a trapezoid, as convex hulls are): area (r_e^2 - r_i^2)/2 sin b, b = pi/N,
 // centroid at the radius (2/3) cos(b/2) (r_e^3 - r_i^3)/(r_e^2 - r_i^2).

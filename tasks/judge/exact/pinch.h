@@ -46,8 +46,8 @@ double leastFrictionOfOffsetPlate(double mass, double offset, double torsion_rad
 // --- Plate that slides and spins between two soft fingers
 // --------------------------------------------------------------------------------- Fingers fixed at the origin; plate
 // with centre p, angle th, velocity v, angular velocity w, in its plane, without weight:
-//   v_c = v + w x (0 - p),  s = sqrt(v_c^2 + e^2 w^2),  m v' = -2 mu N v_c/s,  I w' = -2
-//                                                       mu N e^2 w/s + (0 - p) x (m v')
+//   v_c = v + w x (0 - p),  s = sqrt(v_c^2 + e^2 w^2)
+//   m v' = -2 mu N v_c/s,  I w' = -2 mu N e^2 w/s + (0 - p) x (m v')
 // Friction dissipates most on that ellipsoid. Integrated with Runge-Kutta's method at 2 us up to s =
 // 1e-7 m/s, which is 1e-14 m before the end.
 struct PlateRest {

@@ -20,8 +20,8 @@ Quat symmetricTop(double I, double I3, const Vec3& w, double time);
 // --------------------------------------------------------------------------------------------------------- Moments I
 // about two axes through the fixed tip and I3 about the third, along which the centre of mass lies at the distance l.
 // Of the axis' angle a to the vertical and its heading f:
-//   L_3 = I3 w_3, L_z constant,   f' = (L_z - L_3 cos a)/(I sin^2 a),   I a'' = I f'^2 sin a cos a -
-//                                                                       L_3 f' sin a + m g l sin a
+//   L_3 = I3 w_3, L_z constant,   f' = (L_z - L_3 cos a)/(I sin^2 a)
+//   I a'' = I f'^2 sin a cos a - L_3 f' sin a + m g l sin a
 // a constant gives I W^2 cos a - L_3 W + m g l = 0 for f' = W, whose smaller root is the slow precession.
 // Source: L. Landau, E. Lifshitz, Mechanics, 3rd ed., 1976, section 35, problem 1.
 struct HeavyTop {

@@ -57,7 +57,7 @@ std::string faultOfCones(const engine::WorldScratch& scratch) {
 
 // Contacts with torsion or rolling have more rows, which u_C doesn't hold; they are left to the solver's own tests.
 std::string faultOfLaw(const engine::WorldModel& model, const engine::WorldScratch& scratch) {
-  constexpr double kTolerance = 1e-6;
+  constexpr double kTolerance = 1e-6;  // relative
   // [m/s] twice what the solver is content with (few_contacts.cpp), for w is another here
   constexpr double kContent = 2e-8;
   constexpr int kFew = 60;  // contacts; of more an error is allowed (docs/engine.md, "enough")

@@ -198,7 +198,7 @@ class Draft {
   }
 
   void drawCompounds() {
-    constexpr double kSize = 0.06;
+    constexpr double kSize = 0.06;  // [m]
     drawFalling(3 + static_cast<int>(random_.below(4)), 10, kSize);
     // so that no two overlap at the start
     for (std::size_t i = 1; i < bodies.size(); ++i) bodies[i].shapes = anyParts(0.75 * kSize);

@@ -15,7 +15,7 @@ namespace {
 // the peak's), and when all bounces are over.
 std::vector<Record> fading(MeasureContext& context) {
   Simulation sim(readBuiltinScene("s7_bounce"));
-  constexpr double kRadius = 0.02;
+  constexpr double kRadius = 0.02;  // [m]
   const exact::DroppedBall exact{0.5, 0.8, kVerifyG};
   double worst = 0, moved_until = 0, v_before = 0;
   int bounces = 0;

@@ -78,7 +78,7 @@ std::vector<Record> twoHalves(MeasureContext&) {
 }
 
 std::vector<Record> dumbbellSpins(MeasureContext& context) {
-  constexpr double kRadius = 0.01, kHalf = 0.02, kMass = 0.1;
+  constexpr double kRadius = 0.01, kHalf = 0.02, kMass = 0.1;  // [m], [m], [kg]
   const contact::Sphere ball{kRadius};
   engine::WorldOptions options;
   options.gravity_W.setZero();
@@ -102,7 +102,7 @@ std::vector<Record> dumbbellSpins(MeasureContext& context) {
 // Cubes at (0, 0), (a, 0), (0, a): the centre of mass at (a, a)/3; 3 x m a^2/6 of their own, and of the arms
 // I_xx = I_yy = 2/3 m a^2, I_xy = 1/3 m a^2.
 std::vector<Record> inertiaOfAnL(MeasureContext&) {
-  constexpr double kEdge = 0.02, kMass = 0.03;
+  constexpr double kEdge = 0.02, kMass = 0.03;  // [m], [kg]
   const contact::Box cube{Vec3::Constant(kEdge / 2)};
   engine::WorldBuilder builder{engine::WorldOptions{}};
   builder.addBody(

@@ -47,7 +47,7 @@ std::vector<Record> symmetricTop(MeasureContext& context) {
 }
 
 exact::HeavyTop heavyTopOfScene() {
-  constexpr double kMass = 0.1, kRadius = 0.03, kLength = 0.01, kLever = 0.04;
+  constexpr double kMass = 0.1, kRadius = 0.03, kLength = 0.01, kLever = 0.04;  // [kg], [m]
   const double across = kMass * (3 * kRadius * kRadius + kLength * kLength) / 12;
   return {kMass, kLever, across + kMass * kLever * kLever, kMass * kRadius * kRadius / 2, 200, kVerifyG};
 }

@@ -44,7 +44,7 @@ Scene gripperWith(const engine::BodySpec& object, const engine::BodyStart& start
 // A mug stands on its side of the jaws, its handle between them; their drive pulls four times
 // as hard, for the mug's weight has a lever.
 Scene gripperWithMug() {
-  constexpr double kHandle = 0.067, kHigher = 0.03, kStronger = 4, kThinner = 0.014;
+  constexpr double kHandle = 0.067, kHigher = 0.03, kStronger = 4, kThinner = 0.014;  // [m], [m], times, [m]
   const Scene mug = readBuiltinScene("mug");
   const Quat turned = quatFromRotationVector({0, 0, std::numbers::pi / 2});
   Scene scene = gripperWith(mug.bodies[1], {Pose{turned, turned * Vec3(-kHandle, 0, 0)}});
@@ -167,7 +167,7 @@ double dropped(Scene scene) {
 }
 
 std::vector<Record> gripThreshold(MeasureContext& context) {
-  constexpr double kForce = 15, kMass = 0.064, kLimit = kMass * kVerifyG / kForce;
+  constexpr double kForce = 15, kMass = 0.064, kLimit = kMass * kVerifyG / kForce;  // [N], [kg], [-]
   int done = 0;
   const double edge = threshold(0.9, 1.1, 30, [&](double ratio) {
     context.progress(done++ / 42.0);

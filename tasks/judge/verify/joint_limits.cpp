@@ -31,7 +31,7 @@ Linkage towardsStop(double force, double restitution, double h = 1e-3) {
 }
 
 std::vector<Record> stops(MeasureContext&) {
-  constexpr double kForce = 2, kWay = 0.1, kRestitution = 0.5;
+  constexpr double kForce = 2, kWay = 0.1, kRestitution = 0.5;  // [N], [m], [-]
   const double hit = std::sqrt(2 * kWay / kForce), speed = kForce * hit;
   Linkage bouncing = towardsStop(kForce, kRestitution);
   double time_error = std::nan(""), height_error = 0;
@@ -64,7 +64,7 @@ std::vector<Record> stops(MeasureContext&) {
 // Constant forces give each its own constant acceleration, so that both stops are hit at the same moment; then each
 // goes back by its own e, however the two pull at each other.
 std::vector<Record> twoStops(MeasureContext&) {
-  constexpr double kFirst = 1, kSecond = 0.5, kWay = 0.1, kCosine = 0.6;
+  constexpr double kFirst = 1, kSecond = 0.5, kWay = 0.1, kCosine = 0.6;  // [kg], [kg], [m], [-]
   constexpr std::array<double, 2> kFaster{2, 3}, kRestitution{0.5, 0.8};  // accelerations [m/s^2]
   Linkage world(1e-3, Vec3::Zero());
   const int first = world.ball(kFirst, 1e-3, Vec3::Zero()), second = world.ball(kSecond, 1e-3, {0, 0, 0.1});
@@ -104,7 +104,7 @@ std::vector<Record> twoStops(MeasureContext&) {
 // A pendulum let go at the height of its pivot falls to its stop straight below: omega^2 = 2 m g
 // d/I there, after a quarter of its period.
 std::vector<Record> pendulumAndStop(MeasureContext&) {
-  constexpr double kLever = 0.3, kMass = 0.4, kInertia = 1e-3, kRestitution = 0.8;
+  constexpr double kLever = 0.3, kMass = 0.4, kInertia = 1e-3, kRestitution = 0.8;  // [m], [kg], [kg m^2], [-]
   Linkage world;
   const int body = world.ball(kMass, kInertia, {kLever, 0, 0});
   engine::JointModel joint = jointAlong(JointKind::kPivot, Vec3::UnitY(), body, {-kLever, 0, 0}, -1, Vec3::Zero());
@@ -146,7 +146,7 @@ std::vector<Record> dryFriction(MeasureContext& context) {
   }
   slides.run(1);
   const double exact = 0.5 * 0.001 * kDry;
-  constexpr double kSpeed = 0.4;
+  constexpr double kSpeed = 0.4;  // [m/s]
   runs.set(0, 0, kSpeed);
   runs.run(1);
   const double way = kSpeed * kSpeed / (2 * kDry);
@@ -168,7 +168,7 @@ std::vector<Record> tickSizes(MeasureContext& context) {
   double time = 0, rest = 0, held = 0, slides = 0, flagged = 0;
   int done = 0;
   for (const double h : {1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 4e-3}) {
-    constexpr double kForce = 2, kRestitution = 0.5;
+    constexpr double kForce = 2, kRestitution = 0.5;  // [N], [-]
     const double hit = std::sqrt(2 * 0.1 / kForce);
     Linkage bounces = towardsStop(kForce, kRestitution, h), lands = towardsStop(kForce, 0, h);
     bounces.run(0.4);
@@ -192,7 +192,7 @@ std::vector<Record> tickSizes(MeasureContext& context) {
 
 // A drive's force at its limit.
 std::vector<Record> limitedDrive(MeasureContext&) {
-  constexpr double kLimit = 4;
+  constexpr double kLimit = 4;  // force of the drive [N]
   Linkage world(1e-3, Vec3::Zero());
   engine::DriveModel drive = motorOn(world.joint(jointAlong(
       JointKind::kSlider, Vec3::UnitX(), world.ball(1, 1e-3, Vec3::Zero()), Vec3::Zero(), -1, Vec3::Zero())));

@@ -98,7 +98,7 @@ std::vector<Record> fourBars(MeasureContext& context) {
 
 // A torque on the rocker, held by a spring of k = 20 N m/rad at the crank; virtual work: k e da + T db = 0.
 std::vector<Record> loadedFourBar(MeasureContext&) {
-  constexpr double kTorque = 0.5, kStiffness = 20;
+  constexpr double kTorque = 0.5, kStiffness = 20;  // [N m], [N m/rad]
   double worst = 0;
   for (const double start : {0.3, 1.2, 2.5, 4.0}) {
     Mechanism m = fourBar(1e-3, start);

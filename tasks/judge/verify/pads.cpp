@@ -182,7 +182,7 @@ struct Lie {
 };
 
 std::vector<Lie> lies() {
-  constexpr double kQuarter = 0.5 * M_PI, kR = 0.015;
+  constexpr double kQuarter = 0.5 * M_PI, kR = 0.015;  // turn [rad]; radius [m]
   std::vector<Lie> all;
   for (const double angle : {0.0, 0.4, kQuarter}) {
     for (const double half_length : {0.004, 0.03}) {

@@ -36,7 +36,7 @@ double measuredDropTime(Simulation& sim, double depth, MeasureContext& context) 
 std::vector<Record> slipOut(MeasureContext& context) {
   Simulation sim(readBuiltinScene("s4_pinch_098"));
   const exact::SlidingPinch exact{0.1, 0.02, 0.05, 0.008, 2, 0.98 * 0.1 * kVerifyG / 4, kVerifyG};
-  constexpr double kDepth = 0.005;
+  constexpr double kDepth = 0.005;  // of the squeeze [m]
   return {atMost("time to drop 5 mm, relative",
                  std::abs(measuredDropTime(sim, kDepth, context) / exact.dropTime(kDepth) - 1), "-", 1e-4)};
 }

@@ -29,7 +29,7 @@ std::vector<Record> tipping(MeasureContext& context) {
 std::vector<Record> rocking(MeasureContext& context) {
   Simulation sim(readBuiltinScene("rocking_block"));
   const exact::RockingBlock exact{0.03, 0.09, kVerifyG};
-  constexpr double kTilt = 0.15;
+  constexpr double kTilt = 0.15;  // [rad]
   double fallen = std::nan(""), peak = 0, before = kTilt;
   runThrough(sim, context, [&] {
     const Quat q = sim.bodyPose(1).q;
@@ -45,7 +45,7 @@ std::vector<Record> rocking(MeasureContext& context) {
 
 std::vector<Record> ladder(MeasureContext& context) {
   const Scene scene = readBuiltinScene("ladder");
-  constexpr double kLength = 1, kRadius = 0.01, kMu = 0.4;
+  constexpr double kLength = 1, kRadius = 0.01, kMu = 0.4;  // [m], [m], [-]
   int done = 0;
   const auto stands = [&](double angle) {
     context.progress(done++ / 26.0);

@@ -42,7 +42,7 @@ Linkage rodsAt(const std::vector<double>& angles, double h) {
 }
 
 double rodsError(double h, MeasureContext& context) {
-  constexpr double kSeconds = 10;
+  constexpr double kSeconds = 10;  // [s]
   const std::vector<double> start(3, 0.2);
   Linkage world = rodsAt(start, h);
   for (int second = 0; second < kSeconds; ++second) {

@@ -13,7 +13,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSignificance = 0.05;
+constexpr double kSignificance = 0.05;  // of p: level of significance
 
 std::vector<double> finiteValues(const std::vector<double>& values) {
   std::vector<double> finite;

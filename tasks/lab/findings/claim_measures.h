@@ -1,16 +1,16 @@
 // claim_measures: what one study says, as named measures with one value per person, in the units of the claims.
 //
 //   NAME                 threshold of the condition NAME [segments, mm, ms]
-//   finger:NAME          mean speed of the finger in it [mm/s];   tactor:NAME  of the tactor;
-//                                                                 finger/tactor:NAME  their ratio
+//   finger:NAME          mean speed of the finger in it [mm/s]
+//   tactor:NAME          of the tactor;   finger/tactor:NAME  their ratio
 //   place-error          of delays: tactor speed times threshold, over the whole travel [mm]
-//   error                of matched places, mean absolute [mm];   error:inner, error:outer  at the
-//                                                                 inner and the two outermost places
+//   error                of matched places, mean absolute [mm]
+//   error:inner, error:outer  at the inner and the two outermost places
 //   inward:outer         signed error towards the pad's middle at the two outermost places [mm]
 //
-//   tries:C, pickup-time:C, alignment-error:C, alignment-time:C     of both manipulation tasks, C "force"
-//                                                                   or "cld" [-], [s], [deg], [s]
-//   alignment-time:longer                                            with the display, against without [s]
+//   tries:C, pickup-time:C, alignment-error:C, alignment-time:C  of both manipulation tasks, C "force" or "cld"
+//                                                                [-], [s], [deg], [s]
+//   alignment-time:longer                                        with the display, against without [s]
 //   shape identification: shape_measures.h
 //
 // Who has no value has NaN; people stand in the same order everywhere.

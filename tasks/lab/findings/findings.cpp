@@ -12,8 +12,8 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSignificant = 0.05;
-constexpr int kFewest = 4;  // with fewer not even all of them are certainly more than half (Wilson)
+constexpr double kSignificant = 0.05;  // of p: level of significance
+constexpr int kFewest = 4;             // with fewer not even all of them are certainly more than half (Wilson)
 
 // The participants' means of every session that is whole.
 std::vector<std::vector<PersonMeans>> experimentsOf(const std::vector<std::string>& sessions, std::string& hash) {

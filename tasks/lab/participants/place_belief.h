@@ -2,8 +2,8 @@
 //
 //   hypothesis  o, offset of the object's centre from the middle of the
 //               fingertips, across the pinch [m]; mu, friction [-]
-//   holds       Phi((atan mu - asin(|o|/L))/0.1) Phi((2 mu g/W - 1)/0.15),  L = tip radius + half
-//                                                                           width, g grip, W weight [N]
+//   holds       Phi((atan mu - asin(|o|/L))/0.1) Phi((2 mu g/W - 1)/0.15)
+//               L = tip radius + half width [m], g  grip, W  weight [N]
 //   place read  N(p - gain o; place_sd) per axis: the pads' tactors
 //   push read   N(t + o/|o| max(0, asin(|o|/L) - atan mu); push_sd) per axis: t, the mean push's tilt from
 //               the pinch line. Inside the friction cone the push lies along the line of the contacts

@@ -2,10 +2,11 @@
 //
 //   memorise  rolls the finger over a cylinder until the tactor, which a screen shows, is within a
 //             tolerance of the target; holds still; Enter
-//             m = (1 - k) (s1 + sigma n1)          s1  true place of the tactor [m], k  draw
-//                                                      of the memory towards the pad's middle
+//             m = (1 - k) (s1 + sigma n1)
 //   match     raised, the finger comes down elsewhere on another cylinder, and rolls until it feels the same; Enter
-//             s2 + sigma n2 = m                    n1, n2  standard normal, one per reading
+//             s2 + sigma n2 = m
+//   s1      true place of the tactor [m], k  draw of the memory towards the pad's middle [-]
+//   n1, n2  standard normal, one per reading
 //
 // The match's error is s2 - s1. sigma from the published match: mean absolute error 1.3 mm, rebuilt to a standard
 // deviation of 1.57 mm, by sqrt 2 for two readings; k from the published trend of the signed error, -0.11 mm per mm:

@@ -4,9 +4,8 @@
 //   bits     xoshiro256++ (D. Blackman, S. Vigna, "Scrambled linear pseudorandom number generators", ACM TOMS 47(4),
 //            2021), its state filled from the seed by splitmix64 (G. Steele, D. Lea, C. Flood, OOPSLA 2014)
 //   uniform  the upper 53 bits, times 2^-53
-//   normal   sqrt(-2 ln u1) cos(2 pi u2), u1 in (0, 1]  (G. Box, M. Muller, Ann. Math. Stat. 29(2),
-//                                                       1958); the sine branch is dropped, so
-//            that a draw has no hidden half
+//   normal   sqrt(-2 ln u1) cos(2 pi u2), u1 in (0, 1]  (G. Box, M. Muller, Ann. Math. Stat. 29(2), 1958)
+//            the sine branch is dropped, so that a draw has no hidden half
 #pragma once
 #include <array>
 #include <cstdint>

@@ -3,8 +3,8 @@
 //
 // Each millisecond: feel, then what the phase does (a script overrides what it has of them), then pulls
 //
-//   p_i = centre + m_i (t) -+ half u(angle)      m_i  misplacement of the finger, come to within
-//                                                     `settle_time`;  u  the pinch's axis, turned about z
+//   p_i = centre + m_i (t) -+ half u(angle)
+//   m_i  misplacement of the finger, come to within `settle_time`;  u  the pinch's axis, turned about z
 #pragma once
 #include "pincer/tasks/lab/participants/body.h"
 #include "pincer/tasks/lab/participants/participant.h"

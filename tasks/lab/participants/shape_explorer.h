@@ -7,11 +7,9 @@
 //          face; then away, towards the body, back. So did all people (Doxon 2014, ch. 2). Two rounds at the most;
 //          the answer may come at the middle of any.
 // follow   the hand's aim a goes across the push that is felt, direction n, in the plane of the sweep,
-//          at the finger's speed, and along n to the
-//          depth at which a finger at p is pushed as hard as is wanted:   n . (p - a) = press / k,  k the
-//                                                                         hand's stiffness; where nothing is
-//          felt it sinks. The finger points away and is only tilted: by a share, drawn per person, of
-//          what would keep its pad square to a ball.
+//          at the finger's speed, and along n to the depth at which a finger at p is pushed as hard as is wanted:
+//          n . (p - a) = press / k,  k  the hand's stiffness. Where nothing is felt it sinks. The finger points away
+//          and is only tilted: by a share, drawn per person, of what would keep its pad square to a ball.
 // read     every reading time, while something is felt: the place of the fingertip and the direction of the surface,
 //
 //   place      p + m + sigma_p n                 m constant in a trial: placement_sd
@@ -31,8 +29,8 @@
 //          E[exp(-angle(n, push)^2 / 2 s^2)] per reading, E over where the finger may be on it. Likewise the
 //          fore-aft angle, by another step of the filter:
 //
-//            y = s - clamp(r (angle fore-aft of n - tilt), travel),   H by differences,   S = H' P
-//                                                                     H + (s_s / |n fore-aft|)^2
+//            y = s - clamp(r (angle fore-aft of n - tilt), travel),   H by differences
+//            S = H' P H + (s_s / |n fore-aft|)^2
 //
 //          but that one reading in a hundred tells nothing.
 //

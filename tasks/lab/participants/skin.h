@@ -7,10 +7,10 @@
 //   band    u -> high-pass at f1, three times -> low-pass at f2;   a = root mean square of the band over the reading
 //   felt    a + sigma n,   sigma = sqrt(a0^2 + (c a)^2) / 0.954,   n standard normal, one per reading
 //
-//   u  motion of the skin [m];  f  push [N];  k, m, zeta  stiffness [N/m], arm's apparent mass [kg],
-//                                                         damping ratio;  a0  absolute threshold,
-//   c  difference threshold, each of 75 % right answers in two intervals: there a difference of
-//      0.674 sqrt(2) sigma = 0.954 sigma is felt.
+//   u      motion of the skin [m];  f  push [N]
+//   k, m, zeta  stiffness [N/m], arm's apparent mass [kg], damping ratio
+//   a0, c  absolute and difference threshold, each of 75 % right answers in two intervals: there a difference of
+//          0.674 sqrt(2) sigma = 0.954 sigma is felt.
 // Sources of the limits, from memory and to be checked against the papers: absolute thresholds of the non-Pacinian and
 // Pacinian channels, S. J. Bolanowski, G. A. Gescheider, R. T. Verrillo, C. M. Checkosky, J. Acoust. Soc. Am. 84(5),
 // 1988 (rounded); difference threshold, J. C. Craig, J. Exp. Psychol. 95(1), 1972 (0.2). The high-pass is of third

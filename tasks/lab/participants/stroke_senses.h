@@ -2,10 +2,10 @@
 //
 //   play    after a stop the finger goes back a small way w; the tactor, if it has play, lags behind:
 //           lost = g (w + sigma_w n) - (d + sqrt(sigma_d^2 + (c d)^2) n'),     the mean over an interval's stops
-//           w, d   own way and the tactor's [m];  g  tactor's way per finger's, known from
-//                                                    training [-];  n, n'  normal, one per stop
-//   delay   time between hand and tactor, the mean over an interval's strokes;  felt = lag + m
-//           sqrt(sigma_t^2 + (c lag)^2) n, one per interval
+//           w, d   own way and the tactor's [m];  n, n'  normal, one per stop
+//           g      tactor's way per finger's, known from training [-]
+//   delay   time between hand and tactor, the mean over an interval's strokes:
+//           felt = lag + m sqrt(sigma_t^2 + (c lag)^2) n, one per interval
 //           stop   from the hand's stop to the last motion of the tactor that is felt, while the finger rests; m = 1
 //           onset  from the hand's start to the tactor's first motion that is felt, masked by the hand's own; m > 1
 //

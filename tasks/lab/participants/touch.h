@@ -1,13 +1,13 @@
 // touch: what the skin of two fingers tells, within the limits of body.h.
 //
 //   grip force of a finger   f = max(0, -f_W . n_W),   low-passed:  f' = (f_now - f)/lag
-//   place of the object      p_fo = (r + w) (d - (d . n) n),   d = cos(a) n + sin(a) t,   a =
-//                                                              |place_L|/r,   t = place_L/|place_L| in F
+//   place of the object      p_fo = (r + w) (d - (d . n) n),   d = cos(a) n + sin(a) t
+//                            a = |place_L|/r,   t = place_L/|place_L| in F
 //
-//   f_W  the arm's push [N], n_W  the pad's normal as felt, r  radius of the fingertip, w  expected
-//                                                              half width of the object [m],
-//   d  direction from the fingertip's centre to the contact, p_fo  from the fingertip to the object's
-//                                                                  centre, across the pad [m].
+//   f_W   the arm's push [N], n_W  the pad's normal as felt
+//   r     radius of the fingertip, w  expected half width of the object [m]
+//   d     direction from the fingertip's centre to the contact
+//   p_fo  from the fingertip to the object's centre, across the pad [m]
 // A spherical fingertip on a spherical object touches on the line of the centres, hence the second equation.
 //
 // The direction of a force tells only whether a finger stands on the dish or touches the object's side. It doesn't

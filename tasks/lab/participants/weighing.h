@@ -1,7 +1,7 @@
 // weighing: the two steps that every belief over hypotheses shares.
 //
-//   weigh     w_k <- w_k exp(l_k) / sum,  l_k the log likelihood of what was observed; returns the share 1
-//                                         / (n sum w_k^2) of hypotheses that count
+//   weigh     w_k <- w_k exp(l_k) / sum,  l_k the log likelihood of what was observed
+//             returns the share 1 / (n sum w_k^2) of hypotheses that count
 //   resample  n copies, hypothesis k about n w_k times, by one draw (systematic)
 //
 // Sources: N. J. Gordon, D. J. Salmond, A. F. M. Smith, "Novel approach to nonlinear/non-Gaussian Bayesian state

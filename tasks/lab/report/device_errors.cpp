@@ -6,16 +6,16 @@
 #include <cmath>
 #include <vector>
 
+#include "pincer/devices/cld/tactor_error.h"
 #include "pincer/tasks/lab/report/html_page.h"
 #include "pincer/tasks/lab/report/statistics.h"
 
 namespace pincer::tasks {
 namespace {
 
-constexpr double kPlaceLimit = 1.3e-3;                      // [m]
-constexpr double kDelayLimit = 0.061, kFrontLimit = 0.132;  // [s]
-constexpr double kLongestLag = 0.2;                         // [s]
-constexpr double kMostLags = 200;                           // at 1 kHz; samples of a damaged session may stand closer
+constexpr double kFrontLimit = 0.132;  // delay of the front end [s]
+constexpr double kLongestLag = 0.2;    // [s]
+constexpr double kMostLags = 200;      // at 1 kHz; samples of a damaged session may stand closer
 constexpr std::int32_t kTouchingFlag = 1, kParkedFlag = 8;
 
 // A run of kept samples of one finger in which its tactor was in use.
@@ -75,7 +75,7 @@ DeviceErrors deviceErrors(const SessionReader& session) {
       const FingerRecord& finger = sample.fingers[i];
       if (!inUse(finger)) continue;
       distances.push_back(std::sqrt(LagSearch::squared(finger.place_wanted_L, finger.place_shown_L)));
-      beyond += distances.back() > kPlaceLimit;
+      beyond += distances.back() > devices::kLocalisationLimit;
       searches[i].add(sample.time, finger);
     }
   });
@@ -93,15 +93,15 @@ std::string deviceErrorsHtml(const DeviceErrors& e) {
   if (e.samples == 0) return "";
   std::string html = "<h2>Errors of the displays, and what people notice</h2>\n<div class=\"wide\"><table>\n" +
                      htmlRow({"measure", "display", "noticed from"}, "th");
-  html += htmlRow(
-      {"place, median error [mm]", fmt::format("{:.2f}", 1e3 * e.median), fmt::format("{:.1f}", 1e3 * kPlaceLimit)},
-      "td");
+  html += htmlRow({"place, median error [mm]", fmt::format("{:.2f}", 1e3 * e.median),
+                   fmt::format("{:.1f}", 1e3 * devices::kLocalisationLimit)},
+                  "td");
   html += htmlRow({"place, 95 % of errors below [mm]", fmt::format("{:.2f}", 1e3 * e.high),
-                   fmt::format("{:.1f}", 1e3 * kPlaceLimit)},
+                   fmt::format("{:.1f}", 1e3 * devices::kLocalisationLimit)},
                   "td");
   html += htmlRow({"samples beyond that [%]", fmt::format("{:.1f}", 100 * e.noticed), "–"}, "td");
   html += htmlRow({"lag, index finger [ms]", fmt::format("{:.0f} ± {:.1f}", 1e3 * e.lag, 0.5e3 * e.step),
-                   fmt::format("{:.0f} (front end: {:.0f})", 1e3 * kDelayLimit, 1e3 * kFrontLimit)},
+                   fmt::format("{:.0f} (front end: {:.0f})", 1e3 * devices::kDelayLimit, 1e3 * kFrontLimit)},
                   "td");
   html += htmlRow({"what remains without the lag, root mean square [mm]", fmt::format("{:.2f}", 1e3 * e.remains), "–"},
                   "td");

@@ -12,7 +12,7 @@ namespace pincer::tasks {
 
 namespace {
 
-constexpr double kBinsPerDecade = 60;
+constexpr double kBinsPerDecade = 60;  // of a histogram over logarithms: 4 % wide
 
 std::vector<double> tickTimes(const SessionReader& session) {
   std::vector<double> times;  // [us]

@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kChanceLimit = 0.05;
+constexpr double kChanceLimit = 0.05;  // of p: level of significance
 
 bool isSimulated(const SessionSummary& s) { return s.info.devices_json.find("\"simulated\"") != std::string::npos; }
 

@@ -1,7 +1,7 @@
 // paired_test: does a measure differ between two conditions that the same people did?
 //
-//   d_i = b_i - a_i, i = 1..n;   mean +- t_{0.975, n-1} s/sqrt(n);   d_z = mean/s   (J. Cohen, Statistical
-//                                                                    Power Analysis, 1988, ch. 2)
+//   d_i = b_i - a_i, i = 1..n;   mean +- t_{0.975, n-1} s/sqrt(n)
+//   d_z = mean/s   (J. Cohen, Statistical Power Analysis, 1988, ch. 2)
 //   t-test     t = mean/(s/sqrt(n)), two-sided, Student with n - 1 degrees of freedom
 //   Wilcoxon   W = sum of the ranks of |d_i| with d_i > 0, zeros left out, ties by mean ranks; p
 //              two-sided and exact over all 2^n signs (F. Wilcoxon, Biometrics Bulletin 1(6), 1945,

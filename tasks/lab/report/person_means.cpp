@@ -9,7 +9,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegrees = 57.29577951308232;
+constexpr double kDegrees = 57.29577951308232;  // per radian
 
 struct Sums {
   double tries = 0, lifts = 0, pickup_time = 0, error = 0, signed_error = 0, alignment_time = 0, regrasps = 0;

@@ -1,7 +1,7 @@
 // statistics: the mean of a few numbers and how well it is known.
 //
-//   mean +- t s / sqrt(n),   s^2 = sum (x - mean)^2 / (n - 1),   P(|T| < t) = 0.95 for Student's
-//                                                                T with n - 1 degrees of freedom
+//   mean +- t s / sqrt(n),   s^2 = sum (x - mean)^2 / (n - 1)
+//   P(|T| < t) = 0.95 for Student's T with n - 1 degrees of freedom
 //
 // Source of the distribution: M. Abramowitz, I. A. Stegun, Handbook of Mathematical Functions, 1964, equations 26.7.3
 // (odd) and 26.7.4 (even degrees of freedom): finite sums, exact. t follows by bisection, to round-off.

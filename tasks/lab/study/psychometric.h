@@ -1,7 +1,7 @@
 // psychometric: how often an answer is right, as a function of the level, and fitting it to constant stimuli.
 //
-//   P(x) = gamma + (1 - gamma - lambda) F((x - alpha) / beta),   F(z) = 1 / (1 + e^-z)  or  the
-//                                                                normal distribution function
+//   P(x) = gamma + (1 - gamma - lambda) F((x - alpha) / beta)
+//   F(z) = 1 / (1 + e^-z)  or  the normal distribution function
 //
 //   x      level;  alpha  where F = 1/2;  beta > 0  spread, both in the level's unit
 //   gamma  guess rate: 1/2 with two intervals;  lambda  lapse rate

@@ -1,8 +1,8 @@
 // staircase: levels that follow the answers. After `down` right answers in a row (since the last change) the level goes
 // down by a step, after `up` wrong ones in a row up by one. Where the direction changes, the level is a reversal.
 //
-//   threshold = mean of the last `averaged` reversal levels;   1-up n-down settles where  p^n = 1/2:
-//                                                              n = 2 at 70.7 %, n = 3 at 79.4 %
+//   threshold = mean of the last `averaged` reversal levels
+//   1-up n-down settles where  p^n = 1/2:  n = 2 at 70.7 %, n = 3 at 79.4 %
 //
 //   p  probability of a right answer at the level [-]
 // Source: H. Levitt, "Transformed up-down methods in psychoacoustics", J. Acoust. Soc. Am. 49(2B), 1971, 467-477.

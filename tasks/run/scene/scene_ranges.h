@@ -33,7 +33,7 @@ inline constexpr NumberRule kTipCoordinate = {
     .min = -kLongestTip, .max = kLongestTip, .remedy = "Positions are in metres: 8 mm are 0.008."};
 inline constexpr NumberRule kRotation = {.min = -100, .max = 100, .remedy = "An axis times an angle in radians."};
 inline constexpr NumberRule kDirection = {.min = -1e6, .max = 1e6, .remedy = "A direction, of any length but 0."};
-constexpr double kShortestDirection = 1e-6;
+constexpr double kShortestDirection = 1e-6;  // [-]: a shorter vector tells no direction
 inline constexpr NumberRule kTime = {.min = 0, .max = kLongestDuration, .remedy = "In seconds from the start."};
 
 // The world.

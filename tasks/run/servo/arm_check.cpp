@@ -127,7 +127,7 @@ std::string armCheckText(const ArmFindings& f) {
 
 std::vector<std::string> oddities(const ArmFindings& f, const ArmCheckOptions& options) {
   std::vector<std::string> odd;
-  constexpr double kMostInvalid = 0.01;
+  constexpr double kMostInvalid = 0.01;  // share of the samples
   if (!f.trip.empty()) odd.push_back(f.trip);
   if (static_cast<double>(f.valid) < (1 - kMostInvalid) * static_cast<double>(f.ticks))
     odd.push_back(

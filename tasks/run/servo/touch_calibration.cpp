@@ -22,7 +22,7 @@ constexpr double kEnough = 1e-12;                            // of a step [rad, 
 constexpr double kStartDistance = 0.02;                      // [m]
 constexpr double kStartTurns[] = {0, -0.3, 0.3, -0.6, 0.6};  // a session takes bases within 30 degrees [rad]
 constexpr double kMostResidual = 1e-3;                       // the handles weren't together [m]
-constexpr double kMostOffsetError = 0.5e-3, kMostTurnError = 0.2 * std::numbers::pi / 180;
+constexpr double kMostOffsetError = 0.5e-3, kMostTurnError = 0.2 * std::numbers::pi / 180;  // [m], [rad]
 
 Mat3 aboutZ(double psi) {
   const double c = math::cos(psi), s = math::sin(psi);

@@ -7,8 +7,8 @@
 //
 //   B    the plane x = 0 of W along the finger, (y, z), its origin the curve's;  C  the fingertip's
 //        centre;  r  its radius [m];  k  stiffness [N/m]
-//   phi  gap [m];  n  outward normal;  a  angle of the contact on the fingertip [rad];  s
-//                                         place on the pad [m of arc, distal positive]
+//   phi  gap [m];  n  outward normal;  a  angle of the contact on the fingertip [rad]
+//   s    place on the pad [m of arc, distal positive]
 // Force and place may follow two different curves (contact/curve/curve.h): shading is a property of what is
 // shown, per sense. The surface has no friction. The place is shown before contact too: on an open curve
 // the nearest point is where contact will begin. Source of the set-up: A. J. Doxon, D. E. Johnson, H. Z.

@@ -131,7 +131,7 @@ TEST_F(HostThreads, ShareWholeValuesWhileDevicesComeAndGo) {
   EXPECT_TRUE(host.problems().empty());
 }
 
-// What the watchdog's thread says holds, whatever the servo's was about to do.
+// The watchdog thread's command holds, whatever the servo's was about to do.
 TEST_F(HostThreads, AStopFromAnotherThreadIsLimpUntilTheNextArming) {
   ASSERT_TRUE(host.waitFor(1, 1, 10));
   UsbArm& arm = *host.arms()[0];

@@ -70,7 +70,7 @@ TEST(MousePickup, PinchesLiftsHoldsAndLetsGo) {
   EXPECT_LT(person.height(), 0.05);  // fallen back into the dish
 }
 
-// What the person sees can be held, and goes on where it stood.
+// A pickup can be held still, and goes on where it stood.
 TEST(MousePickup, SpacePausesAndRightTakesATick) {
   PlayedPerson person;
   person.wait(0.1);

@@ -126,14 +126,17 @@ TEST(Pictures, TheBallIsWhereItIsAndForcesPointFromTheContactsInTheColourOfTheir
         *painter.camera().toPixel(stage.snapshot.X_WB[1].p + Vec3(0, 0, 0.012), kSmall.width, kSmall.height);
     const Pixel orange = pixelAt(image, ball);
     EXPECT_GT(orange.red, orange.blue + 60);
+    int arrows = 0;
     for (int i = 0; i < stage.snapshot.contact_count; ++i) {
       const ContactSnapshot& contact = stage.snapshot.contacts[static_cast<std::size_t>(i)];
       if (contact.finger < 0) continue;
+      ++arrows;
       const Vec3 tip = contact.p_W + 0.97 * painter.scene().metresPerNewton(stage.snapshot) * contact.f_W;
       const Pixel arrow = pixelAt(image, *painter.camera().toPixel(tip, kSmall.width, kSmall.height));
       EXPECT_GT(slips ? arrow.red : arrow.green, (slips ? arrow.green : arrow.red) + 25)
           << "finger " << contact.finger << " slips " << slips;
     }
+    EXPECT_EQ(arrows, 2);
   }
 }
 

@@ -92,7 +92,7 @@ FamilyWorld wallWorld(const WallSpec& spec) {
     }
   }
   if (spec.hit_speed > 0) {
-    constexpr double kRadius = 0.05, kBallMass = 10;
+    constexpr double kRadius = 0.05, kBallMass = 10;  // [m], [kg]
     const Vec3 p(0.5 * spec.columns * (kLength + kApart), -0.3, std::max(kRadius, 0.5 * spec.rows * kHeight));
     maker.add("ball", contact::Sphere{kRadius}, kBallMass, q * p, q, q * Vec3(0, spec.hit_speed, 0));
   }
@@ -120,7 +120,7 @@ FamilyWorld hullWorld(int hulls, std::uint64_t seed) {
 }
 
 FamilyWorld ballWorld(int balls, int side, std::uint64_t seed) {
-  constexpr double kRadius = 0.01, kSpacing = 0.0215;
+  constexpr double kRadius = 0.01, kSpacing = 0.0215;  // [m]
   Uniform uniform(seed);
   WorldMaker maker(0.5, false);
   maker.addCrate(0.5 * side * kSpacing + 0.001);
@@ -133,7 +133,7 @@ FamilyWorld ballWorld(int balls, int side, std::uint64_t seed) {
 }
 
 FamilyWorld pegWorld(double play, double tilt) {
-  constexpr double kRadius = 0.01, kHalfLength = 0.03;
+  constexpr double kRadius = 0.01, kHalfLength = 0.03;  // [m]
   WorldMaker maker(0.2, false);
   const double bottom = 0.015, hole = kRadius + 0.5 * play;  // the floor lies below the hole
   for (int k = 0; k < 8; ++k) {

@@ -21,7 +21,7 @@ BenchVerdict angleFrom(const Quat& exact, double spin, BenchEngine& engine) {
   return {angleBetween(exact, m.X_WB.q)};
 }
 
-constexpr double kBoxMass = 0.1;
+constexpr double kBoxMass = 0.1;  // [kg]
 const Vec3 kBoxHalf(0.01, 0.02, 0.04), kBoxSpin(0.02, 20, 0.02);
 
 BenchWorld tumblingWorld(const Vec3& half, const Vec3& w) {

@@ -31,7 +31,7 @@ struct Peaks {
 };
 
 BenchScene bounceScene() {
-  constexpr double kRestitution = 0.8;
+  constexpr double kRestitution = 0.8;  // [-]
   constexpr int kBounces = 5;
   BenchScene s{.name = "s7/bounce-0.8",
                .metric = "height of 5 bounces, largest relative error",

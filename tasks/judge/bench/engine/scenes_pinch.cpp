@@ -54,7 +54,7 @@ BenchScene holdScene(const std::string& name, double mu, double seconds) {
 // Between steps the depth is taken as quadratic in time, with the velocity at the step's
 // end, so that this errs less than any engine.
 BenchScene slipScene() {
-  constexpr double kDepth = 0.005, kMu = 0.98 * kPinchLimit;
+  constexpr double kDepth = 0.005, kMu = 0.98 * kPinchLimit;  // of the squeeze [m]; [-]
   BenchScene s{.name = "s4/slip-0.98",
                .metric = "time to drop 5 mm, relative error",
                .unit = "-",

@@ -101,7 +101,7 @@ BenchScene slideScene(const std::string& name, double heading, double v0) {
 
 // A ball let go on a slope, of a friction at which it rolls, or slides and rolls.
 BenchScene rollingScene(const std::string& name, double friction_over_limit) {
-  constexpr double kTheta = 30 * kDegree;
+  constexpr double kTheta = 30 * kDegree;  // of the slope [rad]
   const exact::RollingIncline exact{kTheta, friction_over_limit * 2 / 7 * math::tan(kTheta), kBenchG};
   BenchScene s{.name = name, .metric = "way in 1 s, relative error", .unit = "-", .floor = 1e-15, .error_bound = 1e-9};
   s.world.mu = exact.mu;

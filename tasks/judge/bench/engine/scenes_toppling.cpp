@@ -14,7 +14,7 @@ double tiltAboutY(const Quat& q) { return 2 * math::atan2(q.y(), q.w()); }
 
 // On a slope 5 % steeper than its diagonal: it goes over its lower edge, which stays where it is, by 0.2 rad.
 BenchScene tippingScene() {
-  constexpr double kHalfWidth = 0.02, kHalfHeight = 0.04, kTime = 0.24;
+  constexpr double kHalfWidth = 0.02, kHalfHeight = 0.04, kTime = 0.24;  // [m], [m], [s]
   const double slope = math::atan(1.05 * kHalfWidth / kHalfHeight);
   BenchScene s{.name = "more/tipping-block",
                .metric = "angle at 0.24 s, relative error",
@@ -38,7 +38,7 @@ BenchScene tippingScene() {
 // Housner's block, let go tilted: it falls upright, hits with its other edge, and rocks on to a lower peak.
 BenchScene rockingScene() {
   const exact::RockingBlock exact{0.03, 0.09, kBenchG};
-  constexpr double kTilt = 0.15;
+  constexpr double kTilt = 0.15;  // [rad]
   BenchScene s{.name = "more/rocking-block",
                .metric = "tilt after the first impact, relative error",
                .unit = "-",

@@ -37,7 +37,7 @@ class RestingBoxes {
   }
   static engine::WorldState startOf(const engine::WorldModel& model) {
     constexpr int kPerRow = 10;
-    constexpr double kApart = 0.05;
+    constexpr double kApart = 0.05;  // [m]
     std::vector<engine::BodyStart> starts(1);
     for (int i = 0; i + 1 < static_cast<int>(model.bodies.size()); ++i)
       starts.push_back({{Quat::Identity(), Vec3(kApart * (i % kPerRow), -kApart * (i / kPerRow), 0.01)},

@@ -45,7 +45,7 @@ Record promised(FingerMethod method, const std::string& metric, double value, co
 // Two fingers pinch a ball of 75 g (a mesh of 980 triangles) on a floor, lift it
 // by 50 mm within 1 s, and hold it for 3 s.
 std::vector<Record> pickUp(FingerMethod method, MeasureContext& context) {
-  constexpr double kRadius = 0.02, kLift = 0.05, kSqueeze = 3e-3;
+  constexpr double kRadius = 0.02, kLift = 0.05, kSqueeze = 3e-3;  // [m]
   engine::WorldBuilder builder(benchWorld(true));
   builder.addBody({"ball", meshBall(method, kRadius, 7), true, 0.075, {0.6, 0.6, 0, 3.3e-3}});
   builder.addBody({"floor", contact::HalfSpace{}, false, 0, {0.6, 0.6, 0, 0}});
@@ -144,7 +144,7 @@ std::vector<Record> facets(FingerMethod method, MeasureContext&) {
 // A ball between two fingers that press 3 mm each, pushed off its middle by 1 mm: how its energy goes,
 // and what of it is momentum from nowhere.
 std::vector<Record> ringing(FingerMethod method, MeasureContext&) {
-  constexpr double kMass = 0.02;
+  constexpr double kMass = 0.02;  // [kg]
   engine::WorldBuilder builder(benchWorld(false));
   builder.addBody({"ball", contact::Sphere{0.02}, true, kMass, {0.6, 0.6, 0, 3.3e-3}});
   const auto devices = [](double squeeze) {

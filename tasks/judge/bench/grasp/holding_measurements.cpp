@@ -82,7 +82,7 @@ std::vector<Record> coneAndReaction(MeasureContext& context) {
 
 // One finger in a groove of a block that is free to move: two contacts on one body, each counted once.
 std::vector<Record> twoContactsOnOneBody(MeasureContext&) {
-  constexpr double kMass = 0.1;
+  constexpr double kMass = 0.1;  // [kg]
   engine::WorldBuilder builder(benchWorld(false));
   builder.addBody({"block",
                    contact::Mesh{contact::SmoothMesh::build(contact::grooveBlock(M_PI / 4, 0.015, 0.03, 0.03))},
@@ -108,7 +108,7 @@ std::vector<Record> twoContactsOnOneBody(MeasureContext&) {
 
 // The tangential force at which a finger pressed with 2 N begins to slip, found by bisection, over mu f_n.
 double slipOnset(const contact::Shape& shape, const Vec3& from_W) {
-  constexpr double kMu = 0.5;
+  constexpr double kMu = 0.5;  // [-]
   engine::WorldBuilder builder(benchWorld(false));
   builder.addBody({"object", shape, false, 0, {kMu, kMu, 0, 0}});
   BenchGrasp grasp(std::move(builder), {engine::BodyStart{}}, {benchFinger("finger")}, {from_W});

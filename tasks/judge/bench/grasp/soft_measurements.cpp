@@ -9,7 +9,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSoftMu = 0.6;
+constexpr double kSoftMu = 0.6;  // [-]
 
 BenchGrasp softOnPlate(const grasp::SoftPad& pad, double twist_stiffness) {
   engine::WorldBuilder builder(benchWorld(false));

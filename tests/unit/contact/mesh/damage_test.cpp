@@ -43,7 +43,7 @@ std::string bigEndianPly(const TriangleMesh& mesh) {
   return bytes;
 }
 
-// What a text format adds that the writers don't write.
+// Lines of a text format that the writers don't write.
 std::string oddities(MeshFormat format) {
   switch (format) {
     case MeshFormat::obj:
@@ -166,13 +166,16 @@ TEST(MeshDamage, IsRefusedByNameOrHarmless) {
 
 // OBJ announces no counts, so that it can be cut off between two lines without a trace.
 TEST(MeshDamage, ACutOffFileIsNeverTakenForAWholeOne) {
+  int formats = 0;
   for (const Sound& sound : soundFiles()) {
     if (sound.format == MeshFormat::obj) continue;
+    ++formats;
     for (std::size_t size = 0; size < sound.bytes.size() - oddities(sound.format).size() - 20; ++size) {
       EXPECT_THROW(parseMesh(sound.bytes.substr(0, size), sound.format, "part"), InputError)
           << sound.name << " of " << size << " bytes";
     }
   }
+  EXPECT_GE(formats, 6);
 }
 
 }  // namespace

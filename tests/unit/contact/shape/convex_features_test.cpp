@@ -1,4 +1,4 @@
-// What the pair routines know of a convex solid: support points against the sampled
+// Features of a convex solid that the pair routines use: support points against the sampled
 // surface, facets, bends; hulls from points.
 #include "pincer/contact/shape/convex_features.h"
 
@@ -40,6 +40,7 @@ TEST(ConvexFeatures, SupportIsTheOracles) {
 // and none reaches further than the support.
 TEST(ConvexFeatures, FacetsLieOnTheSurfaceCounterClockwise) {
   RandomNumbers random(2);
+  int turns = 0;
   for (const NamedShape& solid : sampleConvexSolids()) {
     const SampledSurface surface(solid.shape);
     for (int i = 0; i < 8; ++i) {
@@ -55,6 +56,7 @@ TEST(ConvexFeatures, FacetsLieOnTheSurfaceCounterClockwise) {
         ASSERT_NEAR(surface.signedDistance(p) + roundingOf(solid.shape), 0, SampledSurface::kSamplingError)
             << solid.name;
         if (facet.count < 3) continue;
+        ++turns;
         const Vec3& q = facet.corners[static_cast<std::size_t>((k + 1) % facet.count)].p;
         const Vec3& r = facet.corners[static_cast<std::size_t>((k + 2) % facet.count)].p;
         ASSERT_GT((q - p).cross(r - q).dot(facet.n), 0) << solid.name;
@@ -62,6 +64,7 @@ TEST(ConvexFeatures, FacetsLieOnTheSurfaceCounterClockwise) {
       EXPECT_NEAR(most, d.dot(supportOf(solid.shape, d)), 1e-15) << solid.name;  // one of the corners is the support
     }
   }
+  EXPECT_GE(turns, 150);  // 203 today
 }
 
 // A ray all but straight out of a wall's end, which is beyond the end's plane by round-off, left a short cylinder
@@ -78,15 +81,18 @@ TEST(ConvexFeatures, BendIsTheSupportsDerivative) {
   RandomNumbers random(3);
   const double step = 1e-6;
   for (const NamedShape& solid : sampleConvexSolids()) {
+    int smooth = 0;
     for (int i = 0; i < 50; ++i) {
       const Vec3 d = direction(random);
       if (d.head<2>().norm() < 0.1 || std::abs(d.z()) < 0.1) continue;  // kinks and the pole
       const Vec3 e = direction(random).cross(d).normalized();
       const Vec3 change = (supportOf(solid.shape, d + step * e) - supportOf(solid.shape, d - step * e)) / (2 * step);
       if (change.norm() > 1) continue;  // across a kink
+      ++smooth;
       // third derivatives times step^2, and round-off / step
       EXPECT_LE((bendOf(solid.shape, d) * e - change).norm(), 1e-6) << solid.name;
     }
+    EXPECT_GE(smooth, 40) << solid.name;  // 43 to 46 today
   }
 }
 

@@ -214,7 +214,7 @@ struct Choice {
   double distance;
 };
 
-// What closed_forms.h promises where several points of the surface are equally near; -0.0 chooses like 0.0.
+// The choice of closed_forms.h where several points of the surface are equally near; -0.0 chooses like 0.0.
 TEST(FingerQuery, ChoosesTheSamePointOnTheMedialAxis) {
   const std::vector<Choice> choices = {
       {"centre of a sphere", Sphere{0.02}, {0, 0, 0}, {0, 0, 1}, -0.02},

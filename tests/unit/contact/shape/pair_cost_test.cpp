@@ -1,4 +1,4 @@
-// What a pair costs, printed: touching solids, nanoseconds per query. Asserts nothing about time.
+// Costs of touching pairs, printed: nanoseconds per query. Asserts nothing about time.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

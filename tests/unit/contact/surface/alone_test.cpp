@@ -63,10 +63,12 @@ TEST(SurfaceAlone, NothingElseIsMetOnTheWay) {
         ellipsoid({0.03, 0.02, 0.015}, 16), noisy(geodesicSphere(0.03, 12), 5e-5, 1), plate, slot}) {
     Surface s(mesh);
     RandomNumbers random(3);
-    int alone = 0;
-    for (int i = 0; i < tests::draws(500, 20000); ++i) {
+    const int tried = tests::draws(500, 20000);
+    int found = 0, alone = 0;
+    for (int i = 0; i < tried; ++i) {
       const ShellContact near = s.nearest(randomVector(random, 0.04));
       if (!near.converged) continue;
+      ++found;
       const double h = random.uniform(0.003, kReach);
       const Vec3 S = place(s.net.cell(near.foot.triangle, s.cache).patch, near.foot.b[1], near.foot.b[2]),
                  C = S + h * near.n;
@@ -82,7 +84,11 @@ TEST(SurfaceAlone, NothingElseIsMetOnTheWay) {
       }
     }
     const bool is_gentle = mesh.source != plate.source && mesh.source != slot.source;
-    EXPECT_GT(alone, is_gentle ? 20 : -1) << mesh.source;
+    EXPECT_GE(found, 0.7 * tried) << mesh.source;  // 403 of 500 and more
+    // 193 of 500 and more. Of the plate and the slot none is said today; what is said of them is judged all the same.
+    if (is_gentle) {
+      EXPECT_GE(alone, 0.25 * tried) << mesh.source;
+    }
   }
 }
 

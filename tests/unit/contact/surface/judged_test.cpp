@@ -21,7 +21,7 @@ using tests::ShellOracle;
 int budget(int queries) { return tests::draws(queries, 50); }
 
 struct Verdicts {
-  int queries = 0, held = 0, wrong = 0;
+  int queries = 0, held = 0, touching = 0, wrong = 0;
   std::string first_complaint;
 };
 
@@ -29,6 +29,7 @@ void judge(const ShellOracle& oracle, const Vec3& C, double r, const SurfaceCont
   ++verdicts.queries;
   verdicts.held += answer.cost.held > 0;
   if (answer.cost.held > 0) return;
+  verdicts.touching += answer.count > 0;
   for (int i = 0; i < answer.count; ++i) {
     const std::string complaint = oracle.complaint(C, r, answer.points[static_cast<std::size_t>(i)]);
     if (complaint.empty()) continue;
@@ -71,6 +72,7 @@ Verdicts strokes(const TriangleMesh& mesh, double scale, int queries, std::uint6
 void expectAllRight(const TriangleMesh& mesh, double scale = 1) {
   const Verdicts verdicts = strokes(mesh, scale, budget(200), 1);
   EXPECT_EQ(verdicts.held, 0) << mesh.source;
+  EXPECT_GT(verdicts.touching, 0.9 * verdicts.queries) << mesh.source;
   EXPECT_EQ(verdicts.wrong, 0) << mesh.source << " x" << scale << ": " << verdicts.first_complaint;
 }
 

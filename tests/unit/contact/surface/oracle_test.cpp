@@ -72,6 +72,7 @@ TEST(SurfaceOracle, AFreshSearchAgreesWithAFollowedContact) {
   RandomNumbers random(11);
   SurfaceTracker followed;
   Vec3 C(0.04, 0, 0), v = Vec3::Zero();
+  int compared = 0;
   for (int i = 0; i < 20000; ++i) {
     v = 0.99 * v + 1e-5 * direction(random);
     C += v;
@@ -83,8 +84,10 @@ TEST(SurfaceOracle, AFreshSearchAgreesWithAFollowedContact) {
       continue;
     }
     SurfaceTracker fresh;
+    ++compared;
     ASSERT_NEAR(touch(*object, C, 0.008, fresh).phi, c.phi, 1e-8);  // both solved to 1e-9 m
   }
+  EXPECT_GE(compared, 15'000);  // 19,991 today: the rest bounces off
 }
 
 std::filesystem::path realMesh(const std::string& name) {

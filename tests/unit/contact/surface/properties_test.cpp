@@ -1,4 +1,4 @@
-// What must stay the same when the question is asked in another way.
+// Properties that must stay the same when the question is asked in another way.
 #include <gtest/gtest.h>
 
 #include <algorithm>

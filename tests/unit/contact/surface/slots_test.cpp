@@ -139,7 +139,7 @@ TEST(SurfaceSlots, NoPushGetsThroughAThinWall) {
   }
 }
 
-// What lies behind a wall isn't touched through it, though it faces the finger and is within its radius.
+// A surface behind a wall isn't touched through it, though it faces the finger and is within its radius.
 TEST(SurfaceSlots, AWallHidesWhatIsBehindIt) {
   TriangleMesh plates = gridBox({0.03, 0.03, 5e-4}, 6);
   const TriangleMesh lower = transformed(plates, {Quat(Eigen::AngleAxisd(0.2, Vec3::UnitX())), Vec3(0, 0, -0.005)});

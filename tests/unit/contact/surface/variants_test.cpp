@@ -1,4 +1,4 @@
-// What the shading variants feel, against closed forms: the jump on the finger that facets give, the direction of an
+// Shading variants against closed forms: the jump on the finger that facets give, the direction of an
 // interpolated normal, how often the published iteration takes how long, and where it fails.
 #include <gtest/gtest.h>
 

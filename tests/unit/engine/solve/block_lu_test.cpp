@@ -102,7 +102,7 @@ TEST(BlockLu, SaysSoWhenAllAreConnectedToAll) {
   EXPECT_FALSE(lu.order(kManyProducts));
 }
 
-// What the structure leads to is kept as long as it is the same, and no longer.
+// The order that follows from the structure is kept as long as the structure is the same, and no longer.
 TEST(BlockLu, SolvesOneStructureAfterAnother) {
   BlockLu lu(12, 144, kManyProducts);
   for (int n = 0; n < 8; ++n) {

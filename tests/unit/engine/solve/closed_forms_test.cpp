@@ -185,7 +185,7 @@ TEST(Solver, HasNothingToDoWithoutContacts) {
   EXPECT_TRUE(s.result.converged);
 }
 
-// What isn't finite never passes for a solution, and never comes out.
+// Numbers that aren't finite never pass for a solution, and never come out.
 TEST(Solver, ReportsWhatIsNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, infinite, -infinite}) {

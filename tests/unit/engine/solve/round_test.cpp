@@ -61,7 +61,7 @@ TEST(RoundContact, MovesWhatItsBlocksMove) {
   }
 }
 
-// What touches beside its centre, or has torsion, stays as it is.
+// A contact beside its centre's normal, or one with torsion, stays as it is.
 TEST(RoundContact, IsNoneBesideTheCentreOrWithTorsion) {
   RandomScenes random(33);
   for (int n = 0; n < 100; ++n) {

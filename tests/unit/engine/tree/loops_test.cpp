@@ -110,11 +110,13 @@ TEST(TreeLoops, FactorAnswersAsTheClosedTree) {
 TEST(TreeLoops, RowsAreTheRatesAtWhichLoopsOpenAndBend) {
   std::mt19937_64 random(12);
   constexpr double kStep = 1e-5;
+  int seen = 0;
   for (int n = 0; n < kLoopTrees; ++n) {
     LoopedTree t(random);
     t.base = {t.base.X_WB, {}};  // it stands still
     Dense dense(t);
     if (!dense.is_clear) continue;
+    ++seen;
     LoopBasis basis(t.tree);
     TreePlace place = dense.place;
     closeLoops(t.tree, t.base, dense.factor, 0, dense.rows, basis, t.q, t.u, place);  // rates that open nothing
@@ -143,6 +145,7 @@ TEST(TreeLoops, RowsAreTheRatesAtWhichLoopsOpenAndBend) {
       // differences
       EXPECT_NEAR(-dense.rows.want[k], slope[static_cast<Eigen::Index>(k)], 1e-7 * speed) << n << " row " << k;
   }
+  EXPECT_GT(seen, kLoopTrees / 2);
 }
 
 TEST(TreeLoops, WhatIsOpenCloses) {

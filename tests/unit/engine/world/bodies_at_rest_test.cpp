@@ -52,7 +52,7 @@ void expectRest(const std::string& name, const std::vector<Block>& blocks, doubl
     EXPECT_LE((bodyPose(model, state, static_cast<int>(i)).p - before[i - 1].p).norm(), largest_speed)
         << name << " " << i;
   }
-  // What is below each contact plane carries all that is above it.
+  // The bodies below each contact plane carry all those above it.
   double above = total;
   for (int below = 0; below < static_cast<int>(blocks.size()); ++below) {
     double impulse = 0;

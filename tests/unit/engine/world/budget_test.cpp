@@ -60,13 +60,13 @@ TEST(Budget, RunsOutFlaggedAndAddsNoEnergy) {
   const HeapRun run = dropBoxes(budget);
   EXPECT_GT(run.spent, 0);
   EXPECT_GE(run.flagged, run.spent);
-  // What is spent beyond it: the step that was refused, and the sweeps that every tick gets.
+  // Beyond it the step that was refused is spent, and the sweeps that every tick gets.
   EXPECT_GT(run.least_left, -static_cast<std::int64_t>(1e-3 * kOperationsPerSecond));
 }
 
 TEST(Budget, IsDeterministic) { EXPECT_EQ(hashOf(dropBoxes(5e-5).state), hashOf(dropBoxes(5e-5).state)); }
 
-// What was left of the tick was done in one part, in which needles turned so far that contacts gave them energy: 13 of
+// The rest of the tick was done in one part, in which needles turned so far that contacts gave them energy: 13 of
 // these worlds gained some, up to 600 times what they had.
 TEST(Budget, SpinningNeedlesGainNoEnergyWhereItRunsOut) {
   int spent = 0;

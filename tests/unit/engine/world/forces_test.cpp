@@ -123,7 +123,7 @@ TEST(AppliedForces, AnotherGravityIsThatOfAWorldBuiltWithIt) {
   EXPECT_EQ(drop(moon_W, {}), drop(Vec3(0, 0, -9.81), moon_W));
 }
 
-// What sleeps under a force wakes when it changes, and sleeps again.
+// A body that sleeps under a force wakes when it changes, and sleeps again.
 TEST(AppliedForces, WakeWhatSleeps) {
   WorldBuilder builder{WorldOptions{}};
   builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});

@@ -120,8 +120,8 @@ TEST(Heap, OfTenBallsHasAnAnswerInEachTick) {
   EXPECT_GT(gave, 50);
 }
 
-// What landed went by its velocity at the end of the tick, what it stopped in turn by the mean of two: that ended 0.3
-// mm within it. And what seemed to overlap in the predicted middle of the tick was pushed out, 7 um into the next ball.
+// A ball that landed went by its velocity at the end of the tick, one that it stopped by the mean of two and ended 0.3
+// mm within it. One that seemed to overlap in the predicted middle of the tick was pushed 7 um into the next ball.
 TEST(Heap, AColumnThatLandsDoesNotEndInItself) {
   constexpr int kBalls = 20;  // so many that landings aren't held back to their moments
   constexpr double kRadius = 0.01;

@@ -64,7 +64,7 @@ TEST(Impact, RestsWhenZenosBouncesAreOver) {
   for (double e : {0.5, 0.8, 0.95}) {
     Bouncing world(e, 0, startAt(Vec3(0, 0, kBallRadius + 0.1)));
     const double end = std::sqrt(2 * 0.1 / kGravity) * (1 + e) / (1 - e);
-    // What comes after a hit is cut off once it is shorter than a tick, or its flights than a sixteenth
+    // Bounces after a hit are cut off once they are shorter than a tick, or their flights than a sixteenth
     // of one: then 1/16 /(1 - e) ticks are left.
     const double early = 1e-3 * (2 + 1 / (16 * (1 - e)));
     while (world.state.time < end - early) world.tick();
@@ -228,7 +228,7 @@ TEST(Impact, ABallThatLandsObliquelyInALongTickSlidesOnTheFloor) {
     WorldScratch scratch(model);
     for (int i = 0; i < 30; ++i) {
       ASSERT_EQ(step(model, state, scratch).status, kStepOk);
-      // What other contacts leave of the root is 1e-7 m.
+      // The other contacts leave 1e-7 m of the root.
       ASSERT_GT(state.bodies[1].X_WI.p.z(), kSmall - 1e-7) << "phase " << phase << ", tick " << i;
     }
   }

@@ -1,4 +1,4 @@
-// What rests beside something that moves isn't computed: the same bits as if it
+// Islands that rest beside something that moves aren't computed: the same bits as if they
 // were, and awake as soon as anything differs.
 #include <gtest/gtest.h>
 
@@ -87,7 +87,7 @@ TEST(IslandSleep, HasTheSameBitsAsWithoutSleep) {
   EXPECT_GT(woken, 10);
 }
 
-// What outlives a tick beside the state is no cause.
+// Memory that outlives a tick beside the state is no cause.
 TEST(IslandSleep, ForgottenAtAnyTickChangesNoBit) {
   int slept = 0;
   for (int seed = 0; seed < 3; ++seed) {

@@ -175,7 +175,7 @@ struct TurningSlider {
             {startAt(Vec3(back, 0, 0), Vec3(back_rate, w * back, 0), Vec3(0, 0, w)),
              startAt(Vec3(ahead, 0, 0), Vec3(ahead_rate, w * ahead, 0), Vec3(0, 0, w))}};
   }
-  // What r is after so many seconds, by Runge and Kutta's method of r'' = r w^2, w = L/(I + mu r^2).
+  // r after so many seconds, by Runge and Kutta's method of r'' = r w^2, w = L/(I + mu r^2).
   double exactWay(double seconds) const {
     constexpr int kSteps = 20000;
     const double L = (I + mu * r * r) * w, h = seconds / kSteps;

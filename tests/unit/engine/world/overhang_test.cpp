@@ -57,7 +57,7 @@ Outcome letGo(const Overhanging& body, double over, int cells, int ticks) {
   return {(end.p - settled.p).norm(), end.q.angularDistance(settled.q), place.z() - end.p.z()};
 }
 
-// Whether points on the rim are missed shows in a fraction of a second: the body would tip, or turn about what is left.
+// Missed points on the rim show in a fraction of a second: the body would tip, or turn about those that are left.
 TEST(Overhang, StandsWhileItsCentreOfMassIsOverTheTable) {
   for (const Overhanging& body : overhangingBodies()) {
     for (const int cells : {1, 10}) {

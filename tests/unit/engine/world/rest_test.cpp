@@ -50,7 +50,7 @@ TEST(Rest, HasTheSameBitsWithAndWithoutSleep) {
   EXPECT_GT(sleeps.state.bodies[2].X_WI.p.y(), 5e-3);  // it did move, by (0.3 m/s)^2 / (2 mu g), about 10 mm
 }
 
-// What a sleeping tick reports is what the last one did, and its contacts are still there to be read.
+// A sleeping tick reports as the last one did, and its contacts are still there to be read.
 TEST(Rest, ReportsTheContactsOfTheLastTick) {
   RestWorld w(true);
   ASSERT_TRUE(w.tick(200).asleep);

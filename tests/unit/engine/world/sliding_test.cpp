@@ -1,4 +1,4 @@
-// What slides, and what leaves: errors of second order in the tick.
+// Sliding and leaving: errors of second order in the tick.
 #include <gtest/gtest.h>
 
 #include <cmath>

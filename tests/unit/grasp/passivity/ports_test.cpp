@@ -158,7 +158,7 @@ TEST(Passivity, FingerAtRestIsLeftAloneAndItsDebtIsCarriedOver) {
   EXPECT_NEAR(state.balance, 0, 1e-18);
 }
 
-// What one finger puts in another may take out: an n-port. Each alone, the second would have to be passive by itself.
+// One finger may take out the energy that another puts in: an n-port. Alone, the second would have to be passive.
 TEST(Passivity, EnergyMayPassFromFingerToFinger) {
   for (const bool each : {false, true}) {
     PassivityOptions options = controlling();

@@ -1,4 +1,4 @@
-// What fingers remember of the shapes around them: little, and of the nearest.
+// Fingers remember little of the shapes around them, and of the nearest only.
 #include "pincer/grasp/tick/followed_shapes.h"
 
 #include <gtest/gtest.h>

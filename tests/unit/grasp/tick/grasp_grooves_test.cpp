@@ -58,7 +58,7 @@ struct Pressed : Led {
   }
 };
 
-// What changes in a tick, per way of the device in it.
+// Changes of a tick, per way of the device in it.
 struct FeltChange {
   double place = 0, force = 0;  // of the place on the pad [-] and of the force [N/m]
   int fewest = 99, most = 0;    // contacts that push

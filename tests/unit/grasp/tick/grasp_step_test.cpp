@@ -40,7 +40,7 @@ TEST(GraspStep, ActionEqualsReactionToTheLastBitEveryTick) {
   EXPECT_GT(scratch.fingers[0].normal_force, 0.5);
 }
 
-// What turns far under its contacts is followed in parts, whatever happened in its world before: how fast it would turn
+// A body that turns far under its contacts is followed in parts, whatever happened before: how fast it would turn
 // was taken from the inverse inertia of its last impact, none for a body that never had one, so that a restored
 // snapshot took other parts than its original.
 TEST(GraspStep, NeedleStruckAtItsTipIsFollowedInParts) {

@@ -1,4 +1,4 @@
-// What flat pads hold: how their contacts share friction, and that it comes to rest.
+// Flat pads: how their contacts share friction, and that it comes to rest.
 #include <gtest/gtest.h>
 
 #include <algorithm>

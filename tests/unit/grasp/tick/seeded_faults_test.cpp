@@ -74,7 +74,7 @@ std::string literally(const std::string& text) {
   return pattern;
 }
 
-// What a caller owes is demanded in every build.
+// Preconditions are demanded of the caller in every build.
 class FaultOfTheCaller : public testing::TestWithParam<SeededFault> {};
 TEST_P(FaultOfTheCaller, IsCaughtInEveryBuild) { EXPECT_DEATH(GetParam().seed(), literally(GetParam().caught_by)); }
 

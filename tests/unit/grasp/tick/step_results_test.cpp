@@ -1,4 +1,4 @@
-// What a user reads of a tick, with the public headers alone: fingers' reports and contacts.
+// Results of a tick, read with the public headers alone: fingers' reports and contacts.
 #include <gtest/gtest.h>
 
 #include "pincer/grasp/step.h"

@@ -110,7 +110,7 @@ TEST(DocsExamples, ANewConditionBeginsAsTheFirstPublishedOne) {
   EXPECT_TRUE(std::isnan(study.conditions[0].published));
 }
 
-// What two parameters demand of each other is refused with the place of the one in the file that is nearest to it.
+// Two parameters that contradict each other are refused with the line of the nearest one that the file has.
 TEST(DocsExamples, AStudyThatContradictsItselfIsRefusedWithFileAndLine) {
   const auto said = [](const std::string& text) {
     return errorOf([&] {

@@ -19,7 +19,7 @@ namespace {
 
 using tests::contains;
 
-// What an object of the schema needs besides the key that is probed, and where in a scene it stands; by the object's
+// Other keys that an object of the schema needs, and where in a scene it stands; by the object's
 // name, or for a single key by object.key.
 struct Place {
   std::map<std::string, std::string> members;
@@ -99,7 +99,7 @@ std::string sceneAt(const Place& place, const std::string& key, double value) {
   return place.before + "{" + object + "}" + place.after;
 }
 
-// What the reader says against the number at `key` itself; empty where it takes it, whatever it says of the rest.
+// The reader's objection to the number at `key` itself; empty where it takes it, whatever it says of the rest.
 std::string complaint(const Place& place, const std::string& key, double value) {
   try {
     parseScene(sceneAt(place, key, value), "probe");

@@ -23,11 +23,14 @@ TEST(Stress, AFewWorldsOfEachClassHold) {
 // 1e-22 N s still stuck, remembered its flight as slip, and was pulled back at 10 m/s when it landed.
 TEST(Stress, WorldsThatOnceFailedHold) {
   const auto run = [](std::string_view name, std::uint64_t seed) {
+    int found = 0;
     for (const Measurement& measurement : stressMeasurements({.first_seed = seed, .seeds = 1})) {
       if (measurement.name != name) continue;
+      ++found;
       MeasureContext context;
       for (const Record& record : measurement.run(context)) EXPECT_TRUE(record.ok) << record.metric;
     }
+    EXPECT_EQ(found, 1) << name;
   };
   for (const std::uint64_t seed : {31, 125, 164, 211, 244}) run("stress/teleport", seed);
   run("stress/stiffness", 50);

@@ -174,7 +174,7 @@ std::vector<std::string> tablesOf(const std::string& path) {
   return namesBy(path, "SELECT name FROM sqlite_master WHERE type = 'table' ORDER BY name");
 }
 
-// What a column may be changed to, as SQL.
+// Values that a column may be changed to, as SQL.
 constexpr const char* kValues[] = {"NULL",
                                    "-1",
                                    "9223372036854775807",

@@ -1,4 +1,4 @@
-// What came out, in words.
+// Outcomes of findings, in words.
 #include "pincer/tasks/lab/report/finding_words.h"
 
 #include <gtest/gtest.h>

@@ -249,7 +249,7 @@ TEST(Findings, EveryExperimentHasItsOwnPeopleAndEveryVariantTheSame) {
   }
 }
 
-// What a run that was killed left behind: one whole session, one begun, one not there.
+// Remains of a run that was killed: one whole session, one begun, one not there.
 TEST(SessionRuns, TakeWhatIsWholeAndGoOnWithWhatIsBegun) {
   const TemporaryDirectory dir;
   SessionInfo info;

@@ -14,6 +14,7 @@
 #include "pincer/tasks/run/session/bids_export.h"
 #include "pincer/tasks/run/session/database.h"
 #include "pincer/tasks/run/session/session_lock.h"
+#include "pincer/tests/support/pickup_session.h"
 #include "pincer/tests/support/run_app.h"
 #include "pincer/tests/support/temporary_directory.h"
 
@@ -22,17 +23,7 @@ namespace {
 
 const std::atomic<bool> kGoOn{false};
 
-ManipulationSessionOptions quickSession(int repetitions) {
-  ManipulationSessionOptions options;
-  options.study.participants = 1;
-  options.study.tasks = {HandTask::kPickup};
-  options.study.training.pickups = 0;
-  options.study.conditions = {PickupCondition::kCldForce};
-  options.study.pickup.frictions = {0.9};
-  options.study.pickup.repetitions = repetitions;
-  options.study.pickup.timeout = 2;
-  return options;
-}
+ManipulationSessionOptions quickSession(int repetitions) { return tests::pickupSession(repetitions, 2); }
 
 TEST(ManipulationFile, ReadsWhatItWrites) {
   ManipulationStudy study;

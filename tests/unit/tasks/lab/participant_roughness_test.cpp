@@ -1,4 +1,4 @@
-// What a stroke feels like: bands of the skin's motion, and one percept of push and tactor.
+// The feel of a stroke: bands of the skin's motion, and one percept of push and tactor.
 #include <gtest/gtest.h>
 
 #include <cmath>

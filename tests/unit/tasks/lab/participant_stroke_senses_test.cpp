@@ -1,4 +1,4 @@
-// What is felt of a tactor's play and delay, and a tactor that freezes before its end.
+// Senses of a tactor's play and delay, and of a tactor that freezes before its end.
 #include <gtest/gtest.h>
 
 #include <cmath>

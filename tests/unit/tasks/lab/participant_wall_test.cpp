@@ -1,4 +1,4 @@
-// What a participant is given, and that its answers come from nothing else. That its files include nothing but devices/
+// A participant's answers come from the samples that it is given. That its files include nothing but devices/
 // is the house's test (tests/house): here the participants are fed by hand, with no world at all.
 #include <gtest/gtest.h>
 
@@ -218,14 +218,17 @@ TEST(KnownSolids, DistancesAreThoseOfTheClosedForms) {
 
 // Every solid lies as it is rendered in one of its ways: the nearest points of both agree on the vertices of its mesh.
 TEST(KnownSolids, AreTheSolidsThatAreShown) {
+  int shown = 0;
   for (const LyingSolid& lying : lyingSolids()) {
     if (lying.way != 0) continue;
+    ++shown;
     const auto mesh = makeSolid(kSolidNames[static_cast<std::size_t>(lying.name)], false, {});
     double worst = 0;
     for (const Vec3& vertex : mesh->triangles().vertices)
       worst = std::max(worst, (vertex - lying.solid.nearest(vertex)).norm());
     EXPECT_LT(worst, 1e-4) << kSolidNames[static_cast<std::size_t>(lying.name)];
   }
+  EXPECT_EQ(shown, 7);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "pincer/tasks/run/session/database.h"
 #include "pincer/tasks/run/session/input_codec.h"
 #include "pincer/tests/support/error_of.h"
+#include "pincer/tests/support/pickup_session.h"
 #include "pincer/tests/support/temporary_directory.h"
 
 namespace pincer::tasks {
@@ -21,19 +22,12 @@ namespace {
 const std::atomic<bool> kNobodyStops{false};
 
 ManipulationSessionOptions briefSession(int trials) {
-  ManipulationSessionOptions options;
-  options.study.participants = 1;
-  options.study.tasks = {HandTask::kPickup};
-  options.study.training.pickups = 0;
-  options.study.conditions = {PickupCondition::kCldForce};
-  options.study.pickup.frictions = {0.9};
-  options.study.pickup.repetitions = trials;
-  options.study.pickup.timeout = 4;
+  ManipulationSessionOptions options = tests::pickupSession(trials, 4);
   options.devices = "mouse";
   return options;
 }
 
-// What a person does at the window, by the clock of the trial: down beside the sphere, squeeze,
+// A person's actions at the window, by the clock of the trial: down beside the sphere, squeeze,
 // lift, wander about; let go near the end.
 void gesture(devices::MouseHand& hand, const HandScene& scene, std::int64_t tick) {
   if (tick == 2000) hand.move({0, 0, scene.cues.place_W.z() - scene.homes_W[0].z()});

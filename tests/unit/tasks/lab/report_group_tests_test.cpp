@@ -32,7 +32,7 @@ RC_GTEST_PROP(FTail, IsClosedForOneAndTwoDegreesOfFreedom, ()) {
   RC_ASSERT(std::abs(studentTail(std::sqrt(f), n) - fTail(f, 1, n)) <= 1e-12);
 }
 
-// What ch. 2 and 3 of the dissertation print of their own tests, to the digits printed (F = 0.5 alone
+// Tests as ch. 2 and 3 of the dissertation print them, to the digits printed (F = 0.5 alone
 // has one digit: .48 to .55 make .75 to .70).
 TEST(FTail, IsWhatTheDissertationPrintsOfItsTests) {
   EXPECT_NEAR(studentTail(1.53, 502), 0.127, 5e-4);

@@ -131,7 +131,7 @@ TEST(Shapes, FacesAcrossTheWayAreFeltAsLightlyAsIsWanted) {
   EXPECT_LT(memory.hard, 0.01 * memory.samples);
 }
 
-// What the arm's joints bear limited only the gates of arc trials and sessions.
+// The torques that the arm's joints bear limited only the gates of arc trials and sessions.
 TEST(Shapes, WhatTheArmCanDoLimitsTheGateOfAShapeTrial) {
   ShapeTrialSetup setup;
   setup.solid = makeSolid(kSolidNames[0], true, {});

@@ -69,11 +69,14 @@ TEST(SpherePickupTrial, HoldsTheSphere50mmUpForTheLastSecond) {
     if (event.kind == "tone" && event.detail == "start") start = event.time;
   }
   const double end = start + row.duration;
+  int held = 0;
   for (const auto& sample : run.sink.samples) {
     if (sample.time < end - 1 || sample.time > end) continue;
+    ++held;
     // the dish is curved: a bottom 1 mm off its middle is 3 um higher
     EXPECT_GE(sample.p_WB[2], run.options.radius + 0.050 - 1e-4);
   }
+  EXPECT_GE(held, 1000);  // a sample per tick
 }
 
 TEST(SpherePickupTrial, PicksUpASphereWithOrdinarySensesWithinTheTimeOut) {
@@ -174,7 +177,7 @@ TEST(ManipulationStudy, LeavesNoRowOfAnInterruptedTrial) {
   EXPECT_TRUE(sink.trials.empty());
 }
 
-// What is done is left alone, and the rest comes out as if nothing had happened.
+// Finished trials are left alone, and the rest comes out as if nothing had happened.
 TEST(ManipulationStudy, GoesOnWhereItWasStopped) {
   const ManipulationStudy study = shortStudyOfBoth();
   const std::atomic<bool> interrupted{false};

@@ -113,22 +113,28 @@ TEST(Counterbalance, SquaresFollowWilliams) {
 
 // Every promise of `pincer bench study`, on as many observers as the issue asks for.
 TEST(StudyBench, KeepsItsPromises) {
+  int promises = 0;
   for (const Measurement& m : studyMeasurements({.observers = 1000})) {
     if (matches(m.name, "constant-stimuli")) continue;  // thousands of fits: below
+    ++promises;
     MeasureContext context;
     for (const Record& r : m.run(context)) EXPECT_TRUE(r.ok) << m.name << ": " << r.metric << " = " << r.value;
   }
+  EXPECT_GE(promises, 6);
 }
 
 TEST(StudyBench, IntervalsHoldTheThresholdAsOftenAsTheySay) {
   const int observers = tests::draws(200, 10);
+  int judged = 0;
   for (const Measurement& m : studyMeasurements({.observers = observers})) {
     if (m.name != "constant-stimuli/logistic") continue;
+    ++judged;
     MeasureContext context;
     const auto records = m.run(context);
     EXPECT_LE(records[0].value, 2);        // % of the threshold
     EXPECT_NEAR(records[1].value, 95, 5);  // 3 SD of the share of 200: 4.6 %
   }
+  EXPECT_EQ(judged, 1);
 }
 
 }  // namespace

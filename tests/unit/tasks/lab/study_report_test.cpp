@@ -1,4 +1,4 @@
-// What a study's report says, on answers that nobody gave: thresholds, intervals,
+// A study's report on answers that nobody gave: thresholds, intervals,
 // verdicts, and every figure with its numbers.
 #include "pincer/tasks/lab/report/study_report.h"
 

@@ -1,4 +1,4 @@
-// What people are asked beside the trials: which questions, which answers will do, and where they are kept.
+// Questions that people are asked beside the trials, the answers that will do, and where they are kept.
 #include <gtest/gtest.h>
 
 #include "pincer/tasks/lab/experiments/arc_study.h"
@@ -128,7 +128,7 @@ TEST(SurveyFile, NamesWhatIsWrongAndWhere) {
       contains(errorOf([] { parseStudyFile(R"({"session": {"blocks": 2}})", "f.json"); }), "session.blocks = 2"));
 }
 
-// What nobody changed isn't written: sessions of before surveys keep their protocol to the byte.
+// Unchanged questions aren't written: sessions of before surveys keep their protocol to the byte.
 TEST(SurveyFile, IsLeftOutWhereItIsAsGiven) {
   EXPECT_FALSE(contains(studyJson(backlashStudy()), "demographics"));
   EXPECT_FALSE(contains(studyFile(ManipulationStudy{}), "demographics"));

@@ -1,4 +1,4 @@
-// What the columns of a session's tables mean: said of each, once.
+// Meanings of the columns of a session's tables: said of each, once.
 #include "pincer/tasks/run/session/column_meanings.h"
 
 #include <gtest/gtest.h>

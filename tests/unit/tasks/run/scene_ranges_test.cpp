@@ -256,7 +256,7 @@ TEST(SceneRanges, ATrajectoryOf1e300MetresIsRefusedWithItsLine) {
   EXPECT_NE(said("0,0,0,0\n1,nan,0,0\n").find("path.csv:3: \"nan\" isn't a finite number"), std::string::npos);
 }
 
-// What is known only when the world is built is told with the line as well.
+// A mistake that shows only when the world is built is told with its line as well.
 TEST(SceneRanges, WhatIsRefusedLateIsRefusedWithItsLine) {
   const std::string two = R"({"name": "a", "shape": {"type": "sphere", "radius": 0.02}, "mass": 0.1},
 {"name": "b", "shape": {"type": "sphere", "radius": 0.02}, "mass": 0.1, "position": [0, 0, 1]})";

@@ -86,7 +86,7 @@ TEST(ServoVirtual, DoesNothingWhenInterruptedBefore) {
   EXPECT_TRUE(cycle.times.empty());
 }
 
-// What is done is done: a trial that ended in the very tick of the interrupt counts.
+// A trial that ended in the very tick of the interrupt counts.
 TEST(ServoVirtual, IsNotInterruptedWhenTheCycleWasDone) {
   std::atomic<bool> interrupted{false};
   Cycle cycle([&](double) {

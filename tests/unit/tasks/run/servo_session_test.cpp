@@ -14,6 +14,7 @@
 #include "pincer/tasks/run/servo/paced_cycle.h"
 #include "pincer/tasks/run/servo/servo_text.h"
 #include "pincer/tasks/run/session_store.h"
+#include "pincer/tests/support/pickup_session.h"
 #include "pincer/tests/support/session_samples.h"
 #include "pincer/tests/support/temporary_directory.h"
 
@@ -24,17 +25,7 @@ using tests::samplesOf;
 
 const std::atomic<bool> kNobodyEnds{false};
 
-ManipulationSessionOptions shortStudy(int repetitions = 1) {
-  ManipulationSessionOptions options;
-  options.study.participants = 1;
-  options.study.tasks = {HandTask::kPickup};
-  options.study.training.pickups = 0;
-  options.study.conditions = {PickupCondition::kCldForce};
-  options.study.pickup.frictions = {0.9};
-  options.study.pickup.repetitions = repetitions;
-  options.study.pickup.timeout = 3;
-  return options;
-}
+ManipulationSessionOptions shortStudy(int repetitions = 1) { return tests::pickupSession(repetitions, 3); }
 
 TEST(PickupSession, KeepsEveryFifthTickByDefault) {
   const tests::TemporaryDirectory directory;

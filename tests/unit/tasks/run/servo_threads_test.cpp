@@ -1,4 +1,4 @@
-// What the servo steps may be solved on several threads. The name puts it among the tests that
+// The servo's step may be solved on several threads. The name puts it among the tests that
 // run under the thread sanitizer (tests/run).
 #include <gtest/gtest.h>
 

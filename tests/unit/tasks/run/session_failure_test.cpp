@@ -1,4 +1,4 @@
-// What a session promises when the process or the disk dies.
+// Promises of a session when the process or the disk dies.
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 #include <sys/wait.h>

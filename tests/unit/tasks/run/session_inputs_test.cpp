@@ -1,4 +1,4 @@
-// What a session keeps of a person's hands: every bit, and no byte that isn't one.
+// A session keeps every bit of a person's hands, and no byte that isn't one.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

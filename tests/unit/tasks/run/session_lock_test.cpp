@@ -166,7 +166,7 @@ TEST(KilledSession, BetweenItsTwoNamesKeepsOne) {
   expectMended(dir, -1);
 }
 
-// What a kill leaves of a session that was being made: pincers before format 5 made it at its place.
+// Remains of a session that was killed while it was made: pincers before format 5 made it at its place.
 TEST(KilledSession, BeforeItWasMadeIsSaidToHoldNothing) {
   const TemporaryDirectory dir;
   std::ofstream(dir / "empty.db").close();

@@ -42,7 +42,7 @@ struct Rig {
   }
 };
 
-// What the arms say when the fingers squeeze, lift and wiggle; the second arm also measures its velocity.
+// Samples of the arms when the fingers squeeze, lift and wiggle; the second arm also measures its velocity.
 std::vector<FingerInputs> samplesAt(const TickModel& model, int tick) {
   const double t = kTick * tick, squeeze = 2e-3 * std::min(1.0, t / 0.05), lift = 5e-3 * std::sin(20 * t);
   std::vector<FingerInputs> samples(2);
