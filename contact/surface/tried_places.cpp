@@ -88,11 +88,16 @@ void Lookout::examine(const Turns& turns, NearPart& near) {
   const double reach = reachOfTry(turns.isOf(near.place));
   if (reach < ball_.reach && !(reach > 0 && part.mayHold(ball_.C, reach, Facing::front))) return;
   near.due = gone_;
-  if (contacts_.isAny([&](const FollowedContact& f) { return isOn(surface_.net, f.contact.foot, triangle); })) return;
+  if (!(turn_ > 0) && isFollowedOn(triangle)) return;  // without turns a bound would be worked out in every query
   const double way = wayTo(near.place, part);
   near.due += way;
   if (way > 0 || !part.mayHold(ball_.C, reach, Facing::front) || isKnown(triangle, part)) return;
   if (const auto foot = search_.minimumOn(surface_.net, near.place, ball_.C, reach)) tryPlace(*foot);
+}
+
+// True if a followed contact is on the triangle, its edges and vertices among it.
+bool Lookout::isFollowedOn(std::int32_t triangle) const {
+  return contacts_.isAny([&](const FollowedContact& f) { return isOn(surface_.net, f.contact.foot, triangle); });
 }
 
 // How far the centre has to move at least until the part may matter [m].
