@@ -102,12 +102,12 @@ constexpr Nearest nearest(double x) {
 constexpr DoubleDouble kHalfPi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 constexpr DoubleDouble kLn2{0x1.62e42fefa39efp-1, 0x1.abc9e3b39803fp-56};
 
-// sum of c[i] x^i, by pairs, which a processor works on side by side.
-template <std::size_t N>
-constexpr double polynomial(const double (&c)[N], double x) {
+// sum of c[i] x^i, by pairs, which a processor works on side by side. Of numbers, or of several at once.
+template <class Number, std::size_t N>
+constexpr Number polynomial(const Number (&c)[N], Number x) {
   static_assert(N >= 2 && N <= 16);
   const auto pair = [&](std::size_t i) { return i + 1 < N ? c[i] + x * c[i + 1] : c[i]; };
-  const double x2 = x * x, x4 = x2 * x2;
+  const Number x2 = x * x, x4 = x2 * x2;
   const auto four = [&](std::size_t i) { return i + 2 < N ? pair(i) + x2 * pair(i + 2) : pair(i); };
   const auto eight = [&](std::size_t i) { return i + 4 < N ? four(i) + x4 * four(i + 4) : four(i); };
   return N > 8 ? eight(0) + x4 * x4 * eight(8) : eight(0);

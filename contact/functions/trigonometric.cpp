@@ -67,7 +67,7 @@ std::uint64_t digits(int at) {
 
 // x = m 2^e with m of 53 bits: digits of 2/pi before e - 1 give multiples of 4, which no
 // function sees; after 192 more follows 2^-137.
-Reduced byDigits(double x) {
+[[gnu::noinline]] Reduced byDigits(double x) {
   const Significand s = significandOf(x);
   const auto m = static_cast<std::uint64_t>(s.m * 0x1p52);
   const int first = s.exponent - 52 - 2 + 64;
@@ -102,15 +102,23 @@ constexpr double kSine[] = {-1.0 / 6,
 constexpr double kCosine[] = {1.0 / 24,        -1.0 / 720,           1.0 / 40320,           -1.0 / 3628800,
                               1.0 / 479001600, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
 
-// sin(r) - r.hi
-double beyondSine(const DoubleDouble& r, double z) { return r.hi * (z * polynomial(kSine, z)) + r.lo * (1 - 0.5 * z); }
-
-double sineOf(const DoubleDouble& r) { return r.hi + beyondSine(r, r.hi * r.hi); }
-
-double cosineOf(const DoubleDouble& r) {
-  const double z = r.hi * r.hi, half = 0.5 * z, w = 1 - half;
-  return w + (((1 - w) - half) + (z * (z * polynomial(kCosine, z)) - r.hi * r.lo));
+// Sine and cosine of r = hi + lo from their series' sums at z = hi^2.
+double sineFrom(double sum, const DoubleDouble& r, double z) {
+  return r.hi + (r.hi * (z * sum) + r.lo * (1 - 0.5 * z));
 }
+double cosineFrom(double sum, const DoubleDouble& r, double z) {
+  const double half = 0.5 * z, w = 1 - half;
+  return w + (((1 - w) - half) + (z * (z * sum) - r.hi * r.lo));
+}
+
+double sineOf(const DoubleDouble& r) { return sineFrom(polynomial(kSine, r.hi * r.hi), r, r.hi * r.hi); }
+double cosineOf(const DoubleDouble& r) { return cosineFrom(polynomial(kCosine, r.hi * r.hi), r, r.hi * r.hi); }
+
+// Both series side by side; the cosine's ends with a term of 0, which changes no bit.
+using Both [[gnu::vector_size(16)]] = double;
+constexpr Both kBoth[] = {{kSine[0], kCosine[0]}, {kSine[1], kCosine[1]}, {kSine[2], kCosine[2]},
+                          {kSine[3], kCosine[3]}, {kSine[4], kCosine[4]}, {kSine[5], kCosine[5]},
+                          {kSine[6], kCosine[6]}, {kSine[7], 0}};
 
 // Sine and cosine to 2^-57, for quotients of them: here the series begins where the exact cube ends.
 DoubleDouble preciseSine(const DoubleDouble& r) {
@@ -144,11 +152,13 @@ double sin(double angle) {
 
 double cos(double angle) { return isFinite(angle) ? sineOf(reduced(angle), 1) : angle - angle; }
 
-SinCos sinCos(double angle) {
+[[gnu::flatten]] SinCos sinCos(double angle) {
   if (magnitude(angle) < kTiny) return {angle, 1};
   if (!isFinite(angle)) return {angle - angle, angle - angle};
   const Reduced at = reduced(angle);
-  const double s = sineOf(at.r), c = cosineOf(at.r);
+  const double z = at.r.hi * at.r.hi;
+  const Both sums = polynomial(kBoth, Both{z, z});
+  const double s = sineFrom(sums[0], at.r, z), c = cosineFrom(sums[1], at.r, z);
   const double sine = at.quadrant & 1 ? c : s, cosine = at.quadrant & 1 ? s : c;
   return {at.quadrant & 2 ? -sine : sine, (at.quadrant + 1) & 2 ? -cosine : cosine};
 }

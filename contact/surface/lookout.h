@@ -89,6 +89,7 @@ class Lookout {
   bool isEveryonesTurn() const;
   bool hasTriedEnough() const;
   double reachOfTry(bool has_turn) const;
+  bool isFollowedOn(std::int32_t triangle) const;
   double wayTo(std::int32_t place, const PatchBounds& part) const;
   bool isKnown(std::int32_t triangle, const PatchBounds& part) const;
   bool stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const;

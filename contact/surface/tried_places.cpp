@@ -12,9 +12,9 @@ constexpr double kBesideKnown = 0.966;  // cosine of 15 degrees: a normal that f
 constexpr double kAround = 1.0 / 16;
 constexpr int kMostWalked = 32;  // steps and crossings of a query's tries; the last walk is always ended
 
-// True if the place is on an edge or a vertex that this triangle has too.
-bool isOnFeatureOf(const SurfaceNet& net, const Foot& foot, std::int32_t triangle) {
-  if (foot.isOnFace()) return false;
+// True if the place is on this triangle, or on an edge or a vertex that it has too.
+bool isOn(const SurfaceNet& net, const Foot& foot, std::int32_t triangle) {
+  if (foot.triangle == triangle || foot.isOnFace()) return foot.triangle == triangle;
   const auto& v = net.mesh().triangles[static_cast<std::size_t>(triangle)];
   bool shares_all = true;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -87,10 +87,17 @@ void Lookout::examine(const Turns& turns, NearPart& near) {
   near.turn = gone_ + turns.wayToNext(near.place);
   const double reach = reachOfTry(turns.isOf(near.place));
   if (reach < ball_.reach && !(reach > 0 && part.mayHold(ball_.C, reach, Facing::front))) return;
+  near.due = gone_;
+  if (!(turn_ > 0) && isFollowedOn(triangle)) return;  // without turns a bound would be worked out in every query
   const double way = wayTo(near.place, part);
-  near.due = gone_ + way;
+  near.due += way;
   if (way > 0 || !part.mayHold(ball_.C, reach, Facing::front) || isKnown(triangle, part)) return;
   if (const auto foot = search_.minimumOn(surface_.net, near.place, ball_.C, reach)) tryPlace(*foot);
+}
+
+// True if a followed contact is on the triangle, its edges and vertices among it.
+bool Lookout::isFollowedOn(std::int32_t triangle) const {
+  return contacts_.isAny([&](const FollowedContact& f) { return isOn(surface_.net, f.contact.foot, triangle); });
 }
 
 // How far the centre has to move at least until the part may matter [m].
@@ -115,7 +122,7 @@ double Lookout::wayTo(std::int32_t place, const PatchBounds& part) const {
 // along a groove that holds the other wall's.)
 bool Lookout::stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle,
                      const PatchBounds& part) const {
-  if (foot.triangle == triangle || isOnFeatureOf(surface_.net, foot, triangle)) return true;
+  if (isOn(surface_.net, foot, triangle)) return true;
   const double beside = std::max<double>(part.radius, kAround * ball_.r) + part.radius;
   return (S - part.middle()).squaredNorm() < beside * beside && closestNormal(surface_.net, triangle, n) > kBesideKnown;
 }

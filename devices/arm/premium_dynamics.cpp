@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pincer/devices/arm/premium_kinematics.h"
-
 namespace pincer::devices::premium {
 namespace {
 
@@ -44,11 +42,10 @@ Inertia inertia(double tip_mass) {
   return i;
 }
 
-MassMatrix massMatrix(const Inertia& i, const Vec3& q) {
+MassMatrix massMatrix(const Inertia& i, const JointSines& at) {
   MassMatrix m;
-  const auto upper = math::sinCos(q[1]), fore = math::sinCos(q[2]);
-  m.s2 = upper.sin, m.c2 = upper.cos;
-  m.s3 = fore.sin, m.c3 = fore.cos;
+  m.s2 = at.s2, m.c2 = at.c2;
+  m.s3 = at.s3, m.c3 = at.c3;
   m.m11 = i.base + i.u_c * m.c2 * m.c2 + i.u_s * m.s2 * m.s2 + i.f_c * m.c3 * m.c3 + i.f_s * m.s3 * m.s3 +
           i.x * m.c2 * m.s3;
   m.m22 = i.u;

@@ -12,6 +12,7 @@
 // Cavusoglu, Feygin, Tendick, Presence 11 (2002) 555-568, eq. 12-14 and table 2. Departure: their products of half
 // angles are collected into the seven constants above; the Coriolis terms are derived afresh.
 #pragma once
+#include "pincer/devices/arm/premium_kinematics.h"
 #include "pincer/devices/math.h"
 
 namespace pincer::devices::premium {
@@ -35,7 +36,8 @@ struct MassMatrix {
 // The bare arm with `tip_mass` [kg] at the fingertip, >= 0.
 Inertia inertia(double tip_mass);
 
-MassMatrix massMatrix(const Inertia& inertia, const Vec3& q);
+MassMatrix massMatrix(const Inertia& inertia, const JointSines& at);
+inline MassMatrix massMatrix(const Inertia& i, const Vec3& q) { return massMatrix(i, JointSines(q)); }
 
 // c(q, qdot) [N m] for joint speeds `w` [rad/s], at the angles of `m`.
 Vec3 coriolis(const Inertia& inertia, const MassMatrix& m, const Vec3& w);

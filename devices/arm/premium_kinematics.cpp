@@ -10,10 +10,15 @@ double reach(const Vec3& q) { return l1 * math::cos(q[1]) + l2 * math::sin(q[2])
 
 }  // namespace
 
-Vec3 forward(const Vec3& q) {
-  const auto [s1, c1] = math::sinCos(q[0]);
-  const auto [s2, c2] = math::sinCos(q[1]);
-  const auto [s3, c3] = math::sinCos(q[2]);
+JointSines::JointSines(const Vec3& q) {
+  const auto base = math::sinCos(q[0]), upper = math::sinCos(q[1]), fore = math::sinCos(q[2]);
+  s1 = base.sin, c1 = base.cos;
+  s2 = upper.sin, c2 = upper.cos;
+  s3 = fore.sin, c3 = fore.cos;
+}
+
+Vec3 forward(const JointSines& at) {
+  const auto& [s1, c1, s2, c2, s3, c3] = at;
   const double r = l1 * c2 + l2 * s3;
   return {r * s1, l2 - l2 * c3 + l1 * s2, r * c1 - l1};
 }
@@ -30,10 +35,8 @@ std::optional<Vec3> inverse(const Vec3& p_DF) {
   return Vec3(math::atan2(p_DF.x(), p_DF.z() + l1), q2, q2 + math::acos(at_elbow) - std::numbers::pi / 2);
 }
 
-Mat3 jacobian(const Vec3& q) {
-  const auto [s1, c1] = math::sinCos(q[0]);
-  const auto [s2, c2] = math::sinCos(q[1]);
-  const auto [s3, c3] = math::sinCos(q[2]);
+Mat3 jacobian(const JointSines& at) {
+  const auto& [s1, c1, s2, c2, s3, c3] = at;
   const double r = l1 * c2 + l2 * s3;
   Mat3 J;
   J << c1 * r, -l1 * s1 * s2, l2 * s1 * c3,  //

@@ -34,15 +34,23 @@ struct JointLimits {
 inline const Vec3 kWorkspaceMin_D{-0.10, -0.06, -0.06};
 inline const Vec3 kWorkspaceMax_D{0.10, 0.10, 0.05};
 
+// Sines and cosines of the joint angles `q` [rad], so that who asks for several things at one place takes them once.
+struct JointSines {
+  double s1, c1, s2, c2, s3, c3;
+  explicit JointSines(const Vec3& q);
+};
+
 // The fingertip p_DF [m] at joint angles `q` [rad].
-Vec3 forward(const Vec3& q);
+Vec3 forward(const JointSines& at);
+inline Vec3 forward(const Vec3& q) { return forward(JointSines(q)); }
 
 // The joint angles of `p_DF` with the elbow up and r >= 0; absent where the
 // links can't reach. Stops are not considered.
 std::optional<Vec3> inverse(const Vec3& p_DF);
 
 // d p_DF / d q [m/rad].
-Mat3 jacobian(const Vec3& q);
+Mat3 jacobian(const JointSines& at);
+inline Mat3 jacobian(const Vec3& q) { return jacobian(JointSines(q)); }
 
 // Signed distance from the singular postures: det J over its value at the reset place (1 there, 0 where singular) [-].
 double dexterity(const Vec3& q);

@@ -101,7 +101,7 @@ ArmSample SimArm::sample() { return sample_; }
 
 void SimArm::commandForce(const Vec3& f_D) {
   if (fault_ == SimFault::kStuckMotor || fault_ == SimFault::kUnplugged) return;
-  Vec3 tau = f_D.allFinite() ? Vec3(jacobian(measuredAngles()).transpose() * f_D) : Vec3::Zero();
+  Vec3 tau = f_D.allFinite() ? Vec3(J_measured_.transpose() * f_D) : Vec3::Zero();
   const double load = tau.cwiseQuotient(settings_.peak_force * kLever).cwiseAbs().maxCoeff();
   if (load > 1) tau /= load;
   // the newest command replaces the last one
@@ -151,10 +151,11 @@ double SimArm::mechanicalEnergy() const {
 void SimArm::step(double h) {
   driveMotors(h);
   const Vec3 q = q_ + 0.5 * h * w_;
-  const MassMatrix m = massMatrix(inertia_, q);
-  const Mat3 J = jacobian(q);
+  const JointSines at(q);
+  const MassMatrix m = massMatrix(inertia_, at);
+  const Mat3 J = jacobian(at);
   const Vec3 v = J * w_;
-  const Vec3 f_hand = hand_.stiffness * (hand_.p_D - forward(q)) - hand_.damping * v;
+  const Vec3 f_hand = hand_.stiffness * (hand_.p_D - forward(at)) - hand_.damping * v;
   const Vec3 bearings = settings_.viscous_friction * kLever.cwiseAbs2();
   const Vec3 tau = tau_ + J.transpose() * f_hand - bearings.cwiseProduct(w_);
   const MassMatrix damped = withDamping(m, J, 0.5 * h * hand_.damping, 0.5 * h * bearings);
@@ -176,15 +177,17 @@ void SimArm::driveMotors(double h) {
 }
 
 void SimArm::takeSample() {
+  const JointSines at(measuredAngles());
+  J_measured_ = jacobian(at);
   if (fault_ == SimFault::kFrozenSamples) return;
   sample_ = ArmSample{};
   sample_.time = time_;
   sample_.valid = fault_ != SimFault::kInvalidSamples && fault_ != SimFault::kUnplugged;
   if (!sample_.valid) return;
   sample_.q_DF = gimbal_;
-  sample_.J = jacobian(measuredAngles());
+  sample_.J = J_measured_;
   sample_.p_DF = fault_ == SimFault::kNotFinitePosition ? Vec3(Vec3::Constant(std::numeric_limits<double>::quiet_NaN()))
-                                                        : forward(measuredAngles());
+                                                        : forward(at);
 }
 
 Vec3 SimArm::measuredAngles() const { return rounded(q_, settings_.encoder_step); }

@@ -97,6 +97,7 @@ class SimArm final : public Arm {
   Vec3 tau_wanted_ = Vec3::Zero();        // what they slew to [N m]
   std::array<PendingTorque, 8> pending_;  // commands on their way, oldest first
   int pending_count_ = 0;
+  Mat3 J_measured_ = Mat3::Zero();  // at the measured angles [m/rad]
   ArmSample sample_;
 };
 

@@ -62,9 +62,13 @@ TactileSample SimCld::sample() { return sample_; }
 bool SimCld::command(const TactileCommand& command) {
   const Vec2 wanted = command.parked ? Vec2::Zero() : command.place_L;
   if (!wanted.allFinite()) return true;
-  const Reach reach = kinematics_.reach(wanted);
-  mailbox_ = Vec2(reach.way.along, settings_.profile.radius * reach.way.round);
-  return reach.moved;
+  mailbox_ = wanted;
+  return !kinematics_.reaches(wanted);
+}
+
+Vec2 SimCld::waysTo(const Vec2& place_L) const {
+  const PadWay way = kinematics_.reach(place_L).way;
+  return {way.along, settings_.profile.radius * way.round};
 }
 
 void SimCld::advance(double dt) {
@@ -85,7 +89,7 @@ void SimCld::setFault(SimFault fault) {
 void SimCld::tick() {
   if (in_flight_ && --hops_left_ == 0) arrive();
   if (frame_tick_ == 0 && mailbox_) {
-    in_flight_ = mailbox_;
+    in_flight_ = waysTo(*mailbox_);
     mailbox_.reset();
     draw_ = draw_ * 6364136223846793005u + 1442695040888963407u;  // Knuth's MMIX generator
     hops_left_ = delay_ticks_ + static_cast<int>((draw_ >> 33) % static_cast<unsigned>(jitter_ticks_ + 1));
@@ -127,8 +131,10 @@ void SimCld::takeSample() {
   if (fault_ == SimFault::kNotFinitePosition) {
     sample_.place_L = Vec2::Constant(std::numeric_limits<double>::quiet_NaN());
   } else {
-    sample_.place_L =
-        placeOf(Vec2(rounded(actuator_.x(), settings_.resolution), rounded(actuator_.y(), settings_.resolution)));
+    const Vec2 read(rounded(actuator_.x(), settings_.resolution), rounded(actuator_.y(), settings_.resolution));
+    if (read != read_) read_place_L_ = placeOf(read);
+    read_ = read;
+    sample_.place_L = read_place_L_;
   }
 }
 

@@ -14,6 +14,7 @@
 // speed are ours (he asks for 20 mm/s, better 74).
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -64,7 +65,10 @@ class SimCld final : public TactileDisplay {
   const TwoDofKinematics& kinematics() const { return kinematics_; }
 
  private:
+  static constexpr double kNotRead = std::numeric_limits<double>::quiet_NaN();
+
   void tick();
+  Vec2 waysTo(const Vec2& place_L) const;
   void arrive();
   void moveAxis(int axis);
   void takeSample();
@@ -81,13 +85,15 @@ class SimCld final : public TactileDisplay {
   std::uint64_t draw_ = 0;                           // of the jitter
   Vec2 most_ = Vec2::Zero(), least_ = Vec2::Zero();  // stops of the actuators [m]
   int hops_left_ = 0;                                // of the command in flight [ticks]
-  std::optional<Vec2> mailbox_;                      // latest command, not yet fetched
-  std::optional<Vec2> in_flight_;                    // fetched, not yet in effect
+  std::optional<Vec2> mailbox_;                      // place of the latest command, not yet fetched [m]
+  std::optional<Vec2> in_flight_;                    // u, fetched, not yet in effect [m]
   Vec2 target_ = Vec2::Zero();                       // u [m]
   Vec2 actuator_ = Vec2::Zero();                     // a [m]
   Vec2 actuator_speed_ = Vec2::Zero();               // a' [m/s]
   Vec2 tactor_ = Vec2::Zero();                       // y [m]
   double a11_ = 0, a12_ = 0, a21_ = 0, a22_ = 0;     // exact motion of (a - u, a') over one tick
+  Vec2 read_ = Vec2::Constant(kNotRead);             // a as measured [m], and the place that it stands for:
+  Vec2 read_place_L_ = Vec2::Zero();                 // found anew only when a has moved on [m]
   TactileSample sample_;
 };
 

@@ -118,8 +118,10 @@ PadWay TwoDofKinematics::wayTo(const Vec2& place_L) const {
   return {r * math::atan2(across.x(), cos), math::asin(std::clamp(across.y(), -1.0, 1.0))};
 }
 
-bool TwoDofKinematics::reaches(const PadWay& way) const {
-  return way.along >= geometry_.place_min && way.along <= geometry_.place_max &&
+bool TwoDofKinematics::reaches(const Vec2& place_L, const PadWay& way) const {
+  // Beyond a quarter turn round the finger the chart would come back from behind.
+  const bool is_in_front = place_L.x() <= 0 || place_L.norm() < profile_.radius * std::numbers::pi / 2;
+  return is_in_front && way.along >= geometry_.place_min && way.along <= geometry_.place_max &&
          std::abs(way.round) <= geometry_.carriage_max;
 }
 
@@ -157,9 +159,7 @@ PadWay TwoDofKinematics::nearestOnEdge(const Vec2& place_L, const PadWay& from, 
 
 Reach TwoDofKinematics::reach(const Vec2& place_L) const {
   const PadWay way = wayTo(place_L);
-  // Beyond a quarter turn round the finger the chart would come back from behind.
-  if (reaches(way) && (place_L.x() <= 0 || place_L.norm() < profile_.radius * std::numbers::pi / 2))
-    return {way, place_L, false};
+  if (reaches(place_L, way)) return {way, place_L, false};
   const TwoDofGeometry& g = geometry_;
   // Where cylinder and sphere meet the edges have a kink, so they end there.
   const double b = g.carriage_max;

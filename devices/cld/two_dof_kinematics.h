@@ -73,6 +73,8 @@ class TwoDofKinematics {
   PadWay wayOf(const Vec3& q) const;          // also off the profile
   Vec2 placeAt(const PadWay& way) const;      // place_L [m]
   PadWay wayTo(const Vec2& place_L) const;    // whether or not it can be reached
+  // False if `place_L` can't be reached.
+  bool reaches(const Vec2& place_L) const { return reaches(place_L, wayTo(place_L)); }
   // The way to `place_L`, or to the reachable place nearest to it in L. Allocates nothing.
   Reach reach(const Vec2& place_L) const;
 
@@ -80,7 +82,7 @@ class TwoDofKinematics {
   const FingerProfile& profile() const { return profile_; }
 
  private:
-  bool reaches(const PadWay& way) const;
+  bool reaches(const Vec2& place_L, const PadWay& way) const;
   PadWay nearestOnEdge(const Vec2& place_L, const PadWay& from, const PadWay& to) const;
 
   TwoDofGeometry geometry_;

@@ -11,7 +11,6 @@
 #include "pincer/tasks/lab/experiments/simulated_trial.h"
 #include "pincer/tasks/lab/sessions/manipulation_session.h"
 #include "pincer/tasks/lab/sessions/record_comparison.h"
-#include "pincer/tasks/lab/sessions/session_hash.h"
 #include "pincer/tasks/lab/sessions/study_experiments.h"
 #include "pincer/tasks/lab/sessions/study_replay.h"
 #include "pincer/tasks/run/session/build_info.h"

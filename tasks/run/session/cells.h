@@ -45,11 +45,10 @@ inline void readCell(const Cell& cell, std::uint64_t& field) {
 }
 
 inline void readCell(const Cell& cell, double& field) {
-  const CellType type = cell.row.type(cell.column);
+  const std::optional<double> number = cell.row.number(cell.column);
   const ColumnRange range = cell.name.rangeOf<double>();
-  const bool number = type == CellType::kReal || type == CellType::kInteger || type == CellType::kNull;  // NULL: NaN
-  field = number ? cell.row.real(cell.column) : 0;
-  if (!number || !range.holds(field)) cell.refuse(wordsOf(range, "number"));
+  if (!number || !range.holds(*number)) cell.refuse(wordsOf(range, "number"));
+  field = *number;
 }
 
 template <class Integer>

@@ -65,17 +65,15 @@ struct ColumnName {
       return columns::kAny;
     }
   }
-  // Into an empty text.
-  void writeTo(std::string& name) const {
+  // True of how long ticks took, which no two runs share.
+  constexpr bool isMeasuredTime() const { return unit == "us"; }
+  std::string text() const {
+    std::string name;
     for (const std::string_view part : {finger, quantity, axis, unit}) {
       if (part.empty()) continue;
       if (!name.empty()) name += '_';
       name += part;
     }
-  }
-  std::string text() const {
-    std::string name;
-    writeTo(name);
     return name;
   }
 };

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -36,6 +37,7 @@ class Statement {
   bool step();  // true: a row is there; false: done, and ready to run again. Throws Interrupted (Database::heed)
   CellType type(int column) const;  // that is stored, before any conversion
   double real(int column) const;
+  std::optional<double> number(int column) const;  // NaN for NULL; absent for texts and bytes
   std::int64_t integer(int column) const;
   std::string text(int column) const;  // or bytes
   const Database& database() const { return *database_; }
