@@ -9,7 +9,7 @@ namespace {
 constexpr double kOnFlat = 0.9998;
 
 TrialHead headOf(const CylinderTrialSpec& spec) {
-  return {"cylinder-alignment", spec.trial, spec.participant, spec.index, nameOf(spec.condition), spec.training};
+  return {"cylinder-alignment", spec.trial, spec.participant, spec.index, spec.condition.name, spec.training};
 }
 
 CylinderRules rulesOf(const CylinderAlignmentOptions& options) {

@@ -14,7 +14,7 @@ PickupRules rulesOf(const SpherePickupOptions& options) {
 }
 
 TrialHead headOf(const PickupTrialSpec& spec) {
-  return {"sphere-pickup", spec.trial, spec.participant, spec.index, nameOf(spec.condition), spec.training};
+  return {"sphere-pickup", spec.trial, spec.participant, spec.index, spec.condition.name, spec.training};
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ class Fingerprint {
     for (const char c : text) addByte(static_cast<unsigned char>(c));
     addByte(0);
   }
+  std::uint64_t bits() const { return hash_; }
   std::string text() const { return fmt::format("{:016x}", hash_); }  // 16 hexadecimal digits
 
  private:

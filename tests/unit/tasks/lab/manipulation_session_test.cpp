@@ -27,7 +27,7 @@ ManipulationSessionOptions quickSession(int repetitions) {
   options.study.participants = 1;
   options.study.tasks = {HandTask::kPickup};
   options.study.training.pickups = 0;
-  options.study.conditions = {PickupCondition::kCldForce};
+  options.study.conditions = {publishedHandConditions()[1]};
   options.study.pickup.frictions = {0.9};
   options.study.pickup.repetitions = repetitions;
   options.study.pickup.timeout = 2;
@@ -41,7 +41,7 @@ TEST(ManipulationFile, ReadsWhatItWrites) {
   study.people.limits.tactor_sd = 1.25e-3;
   study.alignment.pivot = false;
   study.pickup.frictions = {0.4, 0.8};
-  study.conditions = {PickupCondition::kCldForce};
+  study.conditions = {publishedHandConditions()[1]};
   const std::string text = studyFile(study);
   EXPECT_EQ(studyFile(parseStudyFile(text, "study.json")), text);
   EXPECT_EQ(hashOf(parseStudyFile(text, "study.json").people), hashOf(study.people));
