@@ -59,7 +59,7 @@ std::string trialCell(std::int64_t trial, const ReplayPage& replay) {
 }
 
 std::string trialList(const SessionSummary& s, const std::vector<TrialRecord>& trials, const ReplayPage& replay) {
-  std::string html = "<h2>All trials</h2>\n<div class=\"wide\"><table>\n" +
+  std::string html = "<h2>All trials</h2>\n<div class=\"wide\"><table class=\"long\">\n" +
                      htmlRow({"trial", "task", "participant", "condition", "µₛ", "outcome", "squeezes", "lifts",
                               "tries > 5 mm", "time [s]", "slips", "drops", "peak grip [N]", "grip ratio [-]",
                               "offset [mm]", "error [deg]", "regrasps"},
