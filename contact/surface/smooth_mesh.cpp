@@ -119,10 +119,9 @@ std::vector<std::string> SmoothMesh::findings(double r) const {
   constexpr double kTightest = 0.8;  // r kappa beyond which one contact jumps between the two sides of a groove
   if (r > kTightest * data_->findings.concave_radius) {
     findings.push_back(
-        fmt::format("a finger of {:.3g} mm radius doesn't fit into the tightest hollow, of {:.3g} mm radius: contact "
-                    "may jump across it. "
-                    "Fill or widen such hollows.",
-                    1000 * r, 1000 * data_->findings.concave_radius));
+        fmt::format("the tightest hollow has {:.3g} mm radius; a finger of {:.3g} mm needs {:.3g} mm, else contact may "
+                    "jump from one side to the other. Fill or widen such hollows, or take a smaller finger.",
+                    1000 * data_->findings.concave_radius, 1000 * r, 1000 * r / kTightest));
   }
   return findings;
 }

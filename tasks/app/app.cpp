@@ -83,7 +83,7 @@ int run(int argc, char** argv) {
     command.add(app, exit_code);
     app.get_subcommands([](const CLI::App*) { return true; }).back()->group(command.group);
   }
-  if (const std::string problem = unknownCommand(app, argc, argv); !problem.empty()) {
+  if (const std::string problem = unknownWord(app, argc, argv); !problem.empty()) {
     complain(problem);
     return kExitUsage;
   }

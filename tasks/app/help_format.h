@@ -1,4 +1,4 @@
-// help_format: how --help looks, and what is said of a command that there isn't.
+// help_format: how --help looks, and what is said of a command or an option that there isn't.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
@@ -11,7 +11,7 @@ class HelpFormat final : public CLI::Formatter {
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override;
 };
 
-// A sentence about the first word that should be a command and isn't one; empty if there is none.
-std::string unknownCommand(const CLI::App& app, int argc, const char* const* argv);
+// A sentence about the first word that should be a command, or a long option, and isn't one; empty if there is none.
+std::string unknownWord(const CLI::App& app, int argc, const char* const* argv);
 
 }  // namespace pincer::tasks

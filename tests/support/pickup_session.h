@@ -10,7 +10,7 @@ inline tasks::ManipulationSessionOptions pickupSession(int repetitions, double t
   options.study.participants = 1;
   options.study.tasks = {tasks::HandTask::kPickup};
   options.study.training.pickups = 0;
-  options.study.conditions = {tasks::PickupCondition::kCldForce};
+  options.study.conditions = {tasks::publishedHandConditions()[1]};
   options.study.pickup.frictions = {0.9};
   options.study.pickup.repetitions = repetitions;
   options.study.pickup.timeout = timeout;

@@ -5,6 +5,7 @@
 
 Each is begun, its instructions read, the training done, and counted trials; then the program is killed, goes on, is left with Esc, and what was done
 comes again to the bit. The person looks at the screen and waits until it has changed before going on, so that a slow machine only takes longer.
+With two fingers the person does what the window's hint says, and nothing else: who obeys it picks up spheres and turns cylinders.
 Pictures of what was seen stay in FOLDER; in a counted trial with one finger neither object nor finger is in them.
 """
 import pathlib
@@ -14,6 +15,7 @@ import subprocess
 import sys
 import time
 
+import matplotlib.ft2font
 import matplotlib.image
 import numpy
 
@@ -24,6 +26,34 @@ TRIALS = 3
 PANEL, TACTOR, RING = (56, 61, 67), (20, 24, 30), (20, 140, 60)  # as the overlay paints them
 PAD = (slice(30, 200), slice(1100, 1264))                       # of the screen
 MOST_GESTURES = 40
+HINT = (slice(38, 58), slice(320, 960))                        # of the screen: the green line
+FONT = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"       # the window's
+STEP = 8                                                       # of a hand that follows a hint [pixels]
+# What the hints ask for, by the text's width on the screen: of both tasks, and of sphere pickup or cylinder alignment alone.
+HINTS = {
+    "Lower the fingers beside the object": "down",
+    "Let go: the fingers are closed, and not around the object": "let go",
+    "It is farther away: Shift and the mouse upwards, or Page up": "away",
+    "It is nearer to you: Shift and the mouse downwards, or Page down": "near",
+    "It is on the right: move there": "right",
+    "It is on the left: move there": "left",
+    "Squeeze: hold the left button, or G": "squeeze",
+}
+LIFTING = {
+    "Too low: a finger touches the dish. Up a little": "up",
+    "One finger touches: go the other way a little": "wait",
+    "Lift it to the line": "up",
+    "Hold it there for a second": "wait",
+}
+TURNING = {
+    "Turn to the left: Q, or Control and the mouse": "q",
+    "Turn to the right: E, or Control and the mouse": "e",
+    "So far the hand goes: let go, turn it back with E, squeeze again": "let go, e",
+    "So far the hand goes: let go, turn it back with Q, squeeze again": "let go, q",
+    "Turn the hand back: E": "e",
+    "Turn the hand back: Q": "q",
+    "The flat faces the monitor: Enter answers": "answer",
+}
 
 
 class Screen:
@@ -78,10 +108,17 @@ def middle_row(mask, least):
     return rows.mean() if len(rows) >= least else None
 
 
+def text_width(text, font=matplotlib.ft2font.FT2Font(FONT)):
+    """In units in which the window's letters are 1 pixel (kFontSize of tasks/view/overlay_imgui.cpp)."""
+    font.set_size(100, 72)
+    return 0.1282 * sum(font.load_char(ord(letter)).linearHoriAdvance for letter in text) / 65536
+
+
 class Person:
     def __init__(self, screen, program):
         self.screen, self.program = screen, program
         self.x, self.y = 640, 300
+        self.turns = False  # a cylinder, else it lifts a sphere
 
     def alive(self):
         return self.program.poll() is None
@@ -201,24 +238,63 @@ class Person:
             self.roll_to(lambda: memory[0], over, 1.5)  # a movement in the next trial's window would take its finger along
         self.wait(3)
 
-    def lift(self, name):
-        """Two fingers: squeeze, up, hold; and an answer, where one is asked for."""
-        self.begin_gesture()
-        self.do("mousemove", 641, 400, "mousemove", 640, 400)
-        self.x, self.y = 640, 400
-        self.wait(3)
-        self.do("mousedown", 1)
-        time.sleep(2)
-        self.wait(3)
-        self.move(640, 150, 6)
-        if name:
-            self.screen.save(name)
-        self.wait(3)
-        time.sleep(2.5)
+    def hints(self):
+        return HINTS | (TURNING if self.turns else LIFTING)
+
+    def hint(self):
+        """The hint that is as wide as what is written in green; None: there is none."""
+        picture = self.screen.look()[HINT]
+        columns = numpy.nonzero(((picture[..., 1] > picture[..., 0] + 60) & (picture[..., 1] > picture[..., 2] + 60)).any(axis=0))[0]
+        if len(columns) == 0:
+            return None
+        width = columns[-1] - columns[0] + 1
+        return min(self.hints(), key=lambda text: abs(text_width(text) - width))
+
+    def obey(self, hint, held):
+        """Does what the hint says; returns whether the fingers are squeezed."""
+        asked = self.hints().get(hint, "wait")
+        ways = {"down": (0, STEP), "up": (0, -STEP), "left": (-STEP, 0), "right": (STEP, 0), "away": (0, -STEP), "near": (0, STEP)}
+        if asked.startswith("let go"):
+            self.do("mouseup", 1)
+            time.sleep(0.6)
+            return False
+        if asked in ways:
+            shift = asked in ("away", "near")
+            self.do(*(["keydown", "shift"] if shift else ["sleep", 0]))
+            self.move(self.x + ways[asked][0], self.y + ways[asked][1], 4)
+            self.do(*(["keyup", "shift"] if shift else ["sleep", 0]))
+        elif asked == "squeeze":
+            if held:  # it was squeezed, and is to be squeezed again: it has slipped out
+                self.do("mouseup", 1)
+                time.sleep(0.6)
+            self.do("mousedown", 1)
+            time.sleep(1.8)  # the fingers close at 0.1 m/s
+            return True
+        elif asked in ("q", "e"):
+            self.do("key", "--repeat", 3, "--delay", 60, asked)
+        elif asked == "answer":
+            self.press("Return")
+        self.wait(2, 0.5)
+        return held
+
+    def manipulate(self, name, over):
+        """One trial, as the hints say; the pointer first where there is room on every side, before the trial begins."""
+        self.do("mouseup", 1, "mousemove", 640, 360)
+        self.x, self.y = 640, 360
+        held, said = False, []
+        while not over() and self.alive():
+            hint = self.hint()
+            if hint and hint not in said:
+                said.append(hint)
+                self.screen.save(f"{name}-{len(said)}")
+            held = self.obey(hint, held)
         self.do("mouseup", 1)
-        self.move(640, 400)
-        self.press("Return")
-        self.wait(3)
+        time.sleep(0.3)
+
+
+def rows_of(session, query):
+    with sqlite3.connect(f"file:{session}?mode=ro", uri=True, timeout=20) as database:
+        return database.execute(query).fetchall()
 
 
 def counted(session):
@@ -241,6 +317,10 @@ def counted(session):
 
 def begun(pincer, screen, experiment, *options):
     output = open(screen.folder / f"{experiment}.out", "a")
+    if experiment in TWO_FINGERS and not options:  # a slow machine takes longer, and doesn't fail for it
+        study = screen.folder / "patient.json"
+        study.write_text('{"sphere_pickup": {"timeout": 600}, "cylinder_alignment": {"timeout": 600}}')
+        options = ("--study", study)
     program = subprocess.Popen([pincer, "run", experiment, "--devices", "mouse", "--view", "--out", screen.folder / experiment, *options],
                                env={**screen.environment, "PATH": "/usr/bin:/bin", "HOME": str(screen.folder)}, stdout=output, stderr=output)
     screen.programs.append(program)
@@ -266,7 +346,8 @@ def do_trials(person, experiment, wanted):
         person.read_pages()
         depth, name = 72 + 16 * (gesture % 5), f"{experiment}-{'trial' if done else 'training'}"
         if experiment in TWO_FINGERS:
-            person.lift(name)
+            person.turns = experiment == "cylinder-alignment"
+            person.manipulate(name, lambda: counted(session) > done or person.sees_page())
         elif experiment == "shape-identification":
             person.name_solid(depth, name)
         elif experiment == "repeated-localisation":
@@ -303,6 +384,10 @@ def run_experiment(pincer, screen, experiment):
     assert replay.returncode == 0 and "The same to the bit" in replay.stdout, replay.stdout + replay.stderr
     if experiment in ONE_FINGER:  # on the mouse the two fingers are seen, unless --blind
         assert not shows_something(folder, f"{experiment}-trial"), f"object or finger is seen in a counted trial: {experiment}-trial.png"
+    if experiment in TWO_FINGERS:
+        outcomes = [row[0] for row in rows_of(folder / experiment / "session.db", "select outcome from trial where training = 0")]
+        print(f"{experiment}: {outcomes}", flush=True)
+        assert set(outcomes) == {"success"}, f"{experiment}: who does what the hints say fails: {outcomes}"
     print(f"{experiment}: {counted(folder / experiment / 'session.db')} trials, killed after {before}, resumed, left, the same to the bit; "
           f"{time.monotonic() - start:.0f} s", flush=True)
 

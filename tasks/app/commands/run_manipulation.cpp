@@ -56,15 +56,15 @@ Examples:
   pincer run manipulation --study study.json --out out/study
   pincer run manipulation --resume --out out/study)";
 
-constexpr const char* kExactly = "exactly";
+constexpr const char *kExactly = "exactly", *kAllConditions = "all", *kBothConditions = "both";
 
 struct ManipulationArguments {
   RunOptions run;
   DeviceRunOptions devices;
   ViewOptions view;
-  std::string condition = "both", strategy, object, units, shading, study_file, write_study;
+  std::string condition = kAllConditions, strategy, object, units, shading, study_file, write_study;
   std::optional<double> size;
-  bool resume = false, free_body = false;
+  bool resume = false, free_body = false, print_study = false;
   std::optional<std::int64_t> person;  // from 1
   ManipulationStudy study;
 };
@@ -81,13 +81,33 @@ ObjectFile objectOf(const ManipulationArguments& arguments) {
           variantOf(arguments.shading)};
 }
 
+// The command's study, changed by the file.
+ManipulationStudy studyOf(const ManipulationArguments& arguments) {
+  ManipulationStudy study = arguments.study;
+  if (!arguments.study_file.empty()) study = readStudyFile(arguments.study_file, study);
+  if (taskName(arguments.study) == "manipulation" || taskName(study) == taskName(arguments.study)) return study;
+  throw InputError(fmt::format("{}: its tasks are those of {}. Leave them out, or give the file to `pincer run {}`.",
+                               printablePath(arguments.study_file), taskName(study), taskName(study)));
+}
+
+// The one that --condition names, or all.
+std::vector<HandCondition> conditionsOf(const ManipulationArguments& arguments, const ManipulationStudy& study) {
+  if (arguments.condition == kAllConditions || arguments.condition == kBothConditions) return study.conditions;
+  std::string known;
+  for (const HandCondition& condition : study.conditions) {
+    if (condition.name == arguments.condition) return {condition};
+    known += condition.name + ", ";
+  }
+  refuseUsage(fmt::format("run: --condition {} is none of the study's. Give {}or {} for all of them.",
+                          printable(arguments.condition), known, kAllConditions));
+}
+
 ManipulationSessionOptions optionsOf(const ManipulationArguments& arguments) {
   ManipulationSessionOptions options;
-  options.study = arguments.study;
+  options.study = studyOf(arguments);
   options.servo = arguments.run.servo;
   options.sample_rate = arguments.run.sample_rate;
-  if (!arguments.study_file.empty()) options.study = readStudyFile(arguments.study_file);
-  if (arguments.condition != "both") options.study.conditions = {pickupConditionOf(arguments.condition)};
+  options.study.conditions = conditionsOf(arguments, options.study);
   if (!arguments.strategy.empty())
     options.study.people.strategy = arguments.strategy == "simple" ? Strategy::kSimple : Strategy::kRational;
   if (arguments.free_body) options.study.alignment.pivot = false;
@@ -230,12 +250,16 @@ int runManipulation(const ManipulationArguments& arguments) {
   }
   ManipulationSessionOptions options = optionsOf(arguments);
   asUsage([&] { validate(options); });  // a study file was checked by itself
+  if (arguments.print_study) {
+    print("{}\n", studyFile(options.study));
+    return kExitOk;
+  }
   if (!arguments.write_study.empty()) {
     writeAtomically(arguments.write_study, studyFile(options.study));
     print("Study: {}\n", printablePath(arguments.write_study));
     return kExitOk;
   }
-  makePickupObject(options.study.pickup);  // bad options and objects are named before anything is written
+  makePickupObjects(options.study);  // bad options and objects are named before anything is written
   const Stage stage = setStage(arguments, options, interrupted);
   const std::string directory = outputDirectory(arguments.run, taskName(options.study));
   makeDirectory(directory);
@@ -277,9 +301,14 @@ void addAlignmentOptions(CLI::App& command, ManipulationArguments& arguments) {
 CLI::App* addManipulationCommand(CLI::App& run, const char* name, const char* what, const char* example,
                                  const std::shared_ptr<ManipulationArguments>& arguments, int& exit_code) {
   CLI::App* command = run.add_subcommand(name, what);
-  command->add_option("--condition", arguments->condition, "What the fingers feel")
-      ->check(CLI::IsMember({"force", "cld+force", "both"}))
+  command
+      ->add_option("--condition", arguments->condition,
+                   "What the fingers feel: force, cld+force, another that the study file names, or all")
       ->capture_default_str();
+  command->add_option("--study", arguments->study_file,
+                      "Changes the design by this study file; counts over other options");
+  command->add_flag("--print-study", arguments->print_study,
+                    "Prints the study file with every parameter and what it means, and does nothing else");
   command->add_option("--participants", arguments->study.participants, "How many simulated participants")
       ->capture_default_str();
   command->add_option("--person", arguments->person,
@@ -326,8 +355,6 @@ void addManipulationTask(CLI::App& run, int& exit_code) {
   CLI::App* command =
       addManipulationCommand(run, "manipulation", "The published study: both tasks, 12 participants, training",
                              kManipulationExample, arguments, exit_code);
-  command->add_option("--study", arguments->study_file,
-                      "Every parameter from this study file; counts over other options");
   command->add_option("--write-study", arguments->write_study, "Writes the study file and does nothing else");
 }
 

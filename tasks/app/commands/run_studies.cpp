@@ -221,7 +221,8 @@ std::shared_ptr<StudyArguments> addStudyTask(CLI::App& run, const std::string& t
   auto arguments = std::make_shared<StudyArguments>();
   arguments->run.sample_rate = 20;  // hours of strokes
   command = run.add_subcommand(task, what);
-  command->add_option("--participants", arguments->participants, "How many simulated participants (default: 12)");
+  command->add_option("--participants", arguments->participants,
+                      "How many simulated participants (default: as many as were published)");
   addSeedOption(*command, arguments->seed, "Of all that varies; the same seed gives the same session", 1);
   command->add_option("--study", arguments->study_file,
                       "File with parameters that differ from the published design (JSON)");

@@ -7,6 +7,7 @@
 
 #include "pincer/engine/state.h"
 #include "pincer/tasks/lab/experiments/shaded_objects.h"
+#include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/participants/random.h"
 
@@ -41,8 +42,12 @@ void validate(const CylinderAlignmentOptions& o) {
   check("participants", o.participants, Parameter{"", {1, 1000, false, "The published study had 12."}});
   check("start_max", o.start_max,
         Parameter{"", {o.start_min, 3.1416, false, "It is in radians, at least start_min; 3.1416 is usual."}});
-  if (o.conditions.empty())
-    throw ParameterError("conditions", "cylinder-alignment: conditions is empty. Give force, cld+force, or both.");
+  requireNamed(o.conditions, "cylinder-alignment");
+  for (const HandCondition& condition : o.conditions) {
+    const CylinderAlignmentOptions changed = inCondition(o, condition);
+    visitParameters(condition, RangeCheck("cylinder-alignment: condition " + condition.name, "conditions"));
+    visitParameters(changed, RangeCheck("cylinder-alignment: condition " + condition.name, "conditions"));
+  }
 }
 
 double wrapAngle(double angle) {
@@ -74,8 +79,8 @@ HandScene makeCylinderScene(const CylinderAlignmentOptions& options, const Cylin
   std::vector<engine::BodyStart> starts;
   if (!options.pivot) starts.emplace_back();
   starts.push_back(start);
-  HandScene scene = makeHandScene(options.hand, world, starts, middle_W, options.radius,
-                                  spec.condition == PickupCondition::kCldForce);
+  HandScene scene =
+      makeHandScene(options.hand, world, starts, middle_W, options.radius, spec.condition.display_tactile);
   if (options.shading) {
     const auto felt = shadedCylinder(options.radius, 0.5 * options.length, flatDistance(options), *options.shading);
     grasp::feelAs(scene.model.grasp, object, contact::Mesh{felt});

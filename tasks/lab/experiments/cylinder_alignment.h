@@ -1,9 +1,8 @@
 // cylinder_alignment: the protocol of "turn the cylinder so that its flat faces the monitor" (A. J. Doxon,
 // dissertation, University of Utah, 2014).
 //
-// Index finger and thumb find the flat of an upright cylinder, without seeing it, and turn it, under two
-// conditions: force only (tactors parked) and contact location display + force. The cylinder stands on a
-// damped vertical pivot, or free on a table.
+// Index finger and thumb find the flat of an upright cylinder, without seeing it, and turn it, under
+// the same conditions as sphere pickup. The cylinder stands on a damped vertical pivot, or free on a table.
 //
 //   theta   direction of the flat's outward normal about W's z axis [rad];   theta* = pi/2: towards
 //           the monitor, away from the operator (+y)
@@ -37,7 +36,7 @@ struct CylinderAlignmentOptions {
   double start_min = 0.7854, start_max = 3.1416;  // of |theta - theta*| [rad], 0 .. pi
   double timeout = 120;                           // [s], 1 .. 600
   int repetitions = 10;                           // per condition, 1 .. 1000
-  std::vector<PickupCondition> conditions{PickupCondition::kForce, PickupCondition::kCldForce};
+  std::vector<HandCondition> conditions = publishedHandConditions();
   int participants = 1;  // 1 .. 1000
   std::uint64_t seed = 1;
 };
@@ -50,7 +49,7 @@ void validate(const CylinderAlignmentOptions& options);
 
 struct CylinderTrialSpec {
   std::int64_t trial = 0, participant = 0, index = 0;  // as in PickupTrialSpec
-  PickupCondition condition = PickupCondition::kForce;
+  HandCondition condition;
   double start_angle = 0;  // theta - theta* [rad]
   std::uint64_t seed = 0;
   bool training = false;

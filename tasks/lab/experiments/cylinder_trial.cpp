@@ -1,6 +1,7 @@
 #include "pincer/tasks/lab/experiments/cylinder_trial.h"
 
 #include "pincer/engine/state.h"
+#include "pincer/tasks/lab/experiments/hand_hints.h"
 
 namespace pincer::tasks {
 namespace {
@@ -9,7 +10,7 @@ namespace {
 constexpr double kOnFlat = 0.9998;
 
 TrialHead headOf(const CylinderTrialSpec& spec) {
-  return {"cylinder-alignment", spec.trial, spec.participant, spec.index, nameOf(spec.condition), spec.training};
+  return {"cylinder-alignment", spec.trial, spec.participant, spec.index, spec.condition.name, spec.training};
 }
 
 CylinderRules rulesOf(const CylinderAlignmentOptions& options) {
@@ -64,17 +65,22 @@ void CylinderTrial::fill(TrialRecord& row) const {
 }
 
 HandGuide CylinderTrial::taskGuide() const {
-  constexpr double kNear = 0.09;  // 5 degrees, at which nobody needs a hint [rad]
+  constexpr double kNear = 0.09;      // 5 degrees, at which nobody needs a hint [rad]
+  constexpr double kPinchUp = 0.025;  // over its middle it may be pinched so far: its half length is 0.04 [m]
   HandGuide guide;
   guide.goal_heading = kTargetAngle;
+  const double needed = wrapAngle(kTargetAngle - angle());
   const bool pinches = touchesObject(0) && touchesObject(1);
-  if (std::abs(wrapAngle(angle() - kTargetAngle)) < kNear) {
+  const Vec3& middle_W = state().grasp.world.bodies[static_cast<std::size_t>(scene().object)].X_WI.p;
+  const HandPlaces places{state().mounts[0].p_WF, state().mounts[1].p_WF, middle_W, scene().cues.flat_distance,
+                          kPinchUp};
+  const char* reach = pinches ? "" : reachHint(places);
+  if (std::abs(needed) < kNear) {
     guide.hint = "The flat faces the monitor: Enter answers";
   } else if (touchesGround()) {
-    guide.hint = "Too low: a finger touches the table";
+    guide.hint = "Too low: a finger touches the table. Up a little";
   } else {
-    guide.hint = pinches ? "Turn: Control and move the mouse, or the keys Q and E"
-                         : "Lower the fingers beside it, and squeeze: hold the left button";
+    guide.hint = *reach ? reach : turnHint(handTurn(places), needed, pinches);
   }
   return guide;
 }

@@ -23,7 +23,7 @@ struct TrialHead {
   std::string task;        // "sphere-pickup"
   std::int64_t trial = 0;  // within the session, from 0
   std::int64_t participant = 0, index = 0;
-  std::string condition;  // "force", "cld+force"
+  std::string condition;  // as the study names it
   bool training = false;
 };
 
@@ -46,7 +46,8 @@ class HandTrial {
   const std::vector<FingerOutputs>& outputs() const { return scratch_.outputs; }
   Cue cue() const { return cue_; }  // the tone of this tick
   const HandScene& scene() const { return scene_; }
-  virtual const char* instruction() const = 0;  // what the person is asked to do, a sentence
+  const std::string& condition() const { return head_.condition; }  // by its name
+  virtual const char* instruction() const = 0;                      // what the person is asked to do, a sentence
   // While the trial runs, the task's; else nothing.
   HandGuide guide() const;
   const TickState& state() const { return state_; }

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/study/counterbalance.h"
 
@@ -50,10 +52,17 @@ void validate(const LocalisationStudy& s) {
   visitParameters(s, check);
   visitParameters(s.session, RangeCheck("repeated-localisation: session", "session"));
   validate(s.session, "repeated-localisation");
-  requireOneBlock(s.session, "repeated-localisation", false);
   check("spacing", s.spacing,
         Parameter{"", {0, 2 * kTactorReach / (s.places - 1), true, "All places lie within 0.016 m."}});
-  check("radius_min", s.radius_min, Parameter{"", {0.02, s.radius_max, false, kAsPublished}});
+  requireNamed(s.conditions, "repeated-localisation");
+  for (std::size_t k = 0; k < s.conditions.size(); ++k) {
+    const LocalisationCondition& c = s.conditions[k];
+    const std::string of = fmt::format("repeated-localisation: condition {}", printable(c.name)),
+                      path = fmt::format("conditions[{}]", k);
+    const RangeCheck check_condition(of, path);
+    visitParameters(c, check_condition);
+    check_condition("radius_min", c.radius_min, Parameter{"", {0.02, c.radius_max, false, kAsPublished}});
+  }
 }
 
 LocalisationExperiment::LocalisationExperiment(const LocalisationStudy& study, const ServoOptions& servo, int stride)
@@ -64,16 +73,33 @@ LocalisationExperiment::LocalisationExperiment(const LocalisationStudy& study, c
 std::vector<StudyRun> LocalisationExperiment::runs() const {
   std::vector<StudyRun> runs;
   for (int p = 0; p < study_.participants; ++p) {
-    StudyRun run{p, 0, "tactor", {}, {}};
-    for (int k = 0; k < study_.places; ++k) {
-      const double place = (k - 0.5 * (study_.places - 1)) * study_.spacing;
-      for (int i = 0; i < study_.repetitions; ++i) run.list.push_back({placeName(k), place});
+    const std::uint64_t person_seed = seedFor(seedFor(study_.seed, kListOrder), static_cast<std::uint64_t>(p));
+    std::int64_t place = 0;
+    for (int block = 0; block < study_.session.blocks; ++block) {
+      for (const int c : conditionOrder(study_.session.order, study_.conditions.size(), p, block, study_.seed)) {
+        StudyRun run{p, place, study_.conditions[static_cast<std::size_t>(c)].name, {}, places()};
+        Random random(place == 0 ? person_seed : seedFor(person_seed, static_cast<std::uint64_t>(place)));
+        shuffle(run.list, random);
+        runs.push_back(std::move(run));
+        ++place;
+      }
     }
-    Random random(seedFor(seedFor(study_.seed, kListOrder), static_cast<std::uint64_t>(p)));
-    shuffle(run.list, random);
-    runs.push_back(std::move(run));
   }
   return runs;
+}
+
+std::vector<ListedStimulus> LocalisationExperiment::places() const {
+  std::vector<ListedStimulus> list;
+  for (int k = 0; k < study_.places; ++k) {
+    const double place = (k - 0.5 * (study_.places - 1)) * study_.spacing;
+    for (int i = 0; i < study_.repetitions; ++i) list.push_back({placeName(k), place});
+  }
+  return list;
+}
+
+const LocalisationCondition& LocalisationExperiment::conditionOf(const StudyTrial& trial) const {
+  return *std::find_if(study_.conditions.begin(), study_.conditions.end(),
+                       [&](const LocalisationCondition& c) { return c.name == trial.run->condition; });
 }
 
 std::optional<ResponseRecord> LocalisationExperiment::present(const StudyTrial& trial, StudySink& sink,
@@ -113,13 +139,16 @@ ArcTrialSetup LocalisationExperiment::setupOf(const StudyTrial& trial, const Pla
   setup.asked.training = trial.training;
   setup.asked.texts.feel = "Move along the finger until it is the place to keep; hold still and press Enter";
   const double sweep = 2 * kTactorReach / study_.finger_radius + kArcBeyond;
+  devices::VirtualTransmission transmission;
+  transmission.backlash = conditionOf(trial).backlash;
+  transmission.delay = static_cast<int>(std::lround(1000 * conditionOf(trial).delay));
   const Quat across = quatFromRotationVector(0.5 * std::numbers::pi * Vec3::UnitY());
   for (const PlacePath& path : cues.paths) {
     const double radius = path.radius - study_.finger_radius;
     const auto curve =
         std::make_shared<const contact::Curve>(movedArc(radius, sweep, path.centre_W), contact::SurfaceVariant::smooth);
     setup.intervals.push_back(
-        {{curve, curve, kTactorReach}, {}, {contact::Cylinder{radius, kHalfWidth}, {across, path.centre_W}}});
+        {{curve, curve, kTactorReach}, transmission, {contact::Cylinder{radius, kHalfWidth}, {across, path.centre_W}}});
   }
   return setup;
 }
@@ -142,6 +171,7 @@ std::string LocalisationExperiment::feedback(const ResponseRecord& response) con
 PlaceCues LocalisationExperiment::cuesOf(const StudyTrial& trial) const {
   constexpr int kMostDraws = 1000;
   Random random(seedFor(trial.seed, kCylinder));
+  const LocalisationCondition& condition = conditionOf(trial);
   PlaceCues cues;
   cues.seed = seedFor(trial.seed, kFeeling);
   cues.target = trial.stimulus.level;
@@ -154,7 +184,7 @@ PlaceCues LocalisationExperiment::cuesOf(const StudyTrial& trial) const {
   cues.p_WD = X_WD.p;
   const double finger_y = cues.paths[0].radius * math::sin(-cues.target / study_.finger_radius);
   for (int k = 0; k < kMostDraws; ++k) {
-    const double radius = random.uniform(study_.radius_min, study_.radius_max);
+    const double radius = random.uniform(condition.radius_min, condition.radius_max);
     const double place = startPlace(cues.target, study_.least_travel, random);
     cues.paths[1] = secondPath(finger_y, study_.base_radius, radius, place, study_.finger_radius);
     if (std::abs(cues.paths[1].centre_W.y()) <= kFarthestCentre) break;

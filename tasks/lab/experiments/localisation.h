@@ -18,19 +18,27 @@
 
 namespace pincer::tasks {
 
+// Which surface the place is found on again, and how the tactor gets there.
+struct LocalisationCondition {
+  std::string name = "tactor", label = "tactor";
+  double radius_min = 0.05, radius_max = 0.14;  // of the second cylinder [m]
+  double backlash = 0;                          // added to the display's own [m]
+  double delay = 0;                             // likewise [s], of 1 ms cells
+  double published = 1.3e-3;                    // mean absolute error [m]; NaN if there is none
+};
+
 struct LocalisationStudy {
   int participants = 20;
   std::uint64_t seed = 1;
   int places = 5;
-  double spacing = 2.8e-3;                      // [m]
-  int repetitions = 10;                         // of each place
-  double least_travel = 4e-3;                   // of the tactor [m]
-  double radius_min = 0.05, radius_max = 0.14;  // of the cylinders [m]
-  double base_radius = 0.095;                   // of the first cylinder [m]
-  double finger_radius = 0.013;                 // [m]
-  double stiffness = 1000;                      // [N/m]
-  double published_error = 1.3e-3;              // mean absolute [m]
-  SurveyPlan session = oneFingerSurvey();       // what people read, train and are asked
+  double spacing = 2.8e-3;       // [m]
+  int repetitions = 10;          // of each place
+  double least_travel = 4e-3;    // of the tactor [m]
+  double base_radius = 0.095;    // of the first cylinder [m]
+  double finger_radius = 0.013;  // [m]
+  double stiffness = 1000;       // [N/m]
+  std::vector<LocalisationCondition> conditions = {{}};
+  SurveyPlan session = oneFingerSurvey();  // what people read, train and are asked
 };
 
 void validate(const LocalisationStudy& study);
@@ -45,11 +53,13 @@ class LocalisationExperiment final : public Experiment {
   std::vector<ListedStimulus> training(const StudyRun& run) const override;
   std::string feedback(const ResponseRecord& response) const override;
   const SurveyPlan& plan() const override { return study_.session; }
-  std::vector<NamedCondition> conditions() const override { return {{"tactor", ""}}; }
+  std::vector<NamedCondition> conditions() const override { return namedOf(study_.conditions); }
 
  private:
+  std::vector<ListedStimulus> places() const;  // of a run, in the row's order
   ArcTrialSetup setupOf(const StudyTrial& trial, const PlaceCues& cues) const;
   PlaceCues cuesOf(const StudyTrial& trial) const;
+  const LocalisationCondition& conditionOf(const StudyTrial& trial) const;
 
   LocalisationStudy study_;
   int stride_;

@@ -18,6 +18,9 @@ ManipulationStudy studyOfJson(const JsonValue& file) {
   return study;
 }
 
-ManipulationStudy readStudyFile(const std::string& path) { return studyOfJson(readJson(path, kStudyFile)); }
+ManipulationStudy readStudyFile(const std::string& path, ManipulationStudy study) {
+  readStudyText(readJson(path, kStudyFile), study);
+  return study;
+}
 
 }  // namespace pincer::tasks

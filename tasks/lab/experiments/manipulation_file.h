@@ -17,7 +17,8 @@ class JsonValue;
 std::string studyFile(const ManipulationStudy& study);
 
 // Throws InputError: file, line, path, value, range, remedy.
-ManipulationStudy readStudyFile(const std::string& path);
+// `study`: whose values are kept where the file has none.
+ManipulationStudy readStudyFile(const std::string& path, ManipulationStudy study = {});
 ManipulationStudy parseStudyFile(std::string_view text, const std::string& name);
 ManipulationStudy studyOfJson(const JsonValue& file);
 

@@ -13,47 +13,57 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::uint64_t kAlignmentSeed = 0x616c69676e, kTrainingSeed = 0x747261696e;  // "align", "train"
+// "align", "train", "block"
+constexpr std::uint64_t kAlignmentSeed = 0x616c69676e, kTrainingSeed = 0x747261696e, kBlockSeed = 0x626c6f636b;
 
-SpherePickupOptions pickupOf(const ManipulationStudy& study, bool training) {
+// Of a time through all conditions, from 0.
+std::uint64_t blockSeed(const ManipulationStudy& study, int block) {
+  return block == 0 ? study.seed : seedFor(study.seed, kBlockSeed + static_cast<std::uint64_t>(block));
+}
+
+SpherePickupOptions pickupOf(const ManipulationStudy& study, bool training, int block) {
   SpherePickupOptions options = study.pickup;
   options.conditions = study.conditions;
   options.participants = study.participants;
-  options.seed = training ? seedFor(study.seed, kTrainingSeed) : study.seed;
+  options.seed = training ? seedFor(blockSeed(study, block), kTrainingSeed) : blockSeed(study, block);
   return options;
 }
 
 class TrialList {
  public:
-  explicit TrialList(const ManipulationStudy& study)
-      : study_(study), counted_(pickupTrials(pickupOf(study, false))), trained_(pickupTrials(pickupOf(study, true))) {}
+  explicit TrialList(const ManipulationStudy& study) : study_(study) {}
 
   std::vector<ManipulationTrial> take() {
     for (std::int64_t person = 0; person < study_.participants; ++person) {
       index_ = 0;
-      for (const int place : conditionOrder(study_.session.order, study_.conditions.size(), person, 0, study_.seed))
-        addPart(person, study_.conditions[static_cast<std::size_t>(place)]);
+      for (int block = 0; block < study_.session.blocks; ++block) addBlock(person, block);
     }
     return std::move(trials_);
   }
 
  private:
-  void addPart(std::int64_t person, PickupCondition condition) {
+  void addBlock(std::int64_t person, int block) {
+    counted_ = pickupTrialsOf(pickupOf(study_, false, block), person);
+    trained_ = pickupTrialsOf(pickupOf(study_, true, block), person);
+    for (const int place : conditionOrder(study_.session.order, study_.conditions.size(), person, block, study_.seed))
+      addPart(person, study_.conditions[static_cast<std::size_t>(place)], block);
+  }
+
+  void addPart(std::int64_t person, const HandCondition& condition, int block) {
     if (has(study_, HandTask::kPickup)) {
-      addPickups(trained_, person, condition, study_.training.pickups, true);
-      addPickups(counted_, person, condition, std::numeric_limits<int>::max(), false);
+      addPickups(trained_, condition, study_.training.pickups, true);
+      addPickups(counted_, condition, std::numeric_limits<int>::max(), false);
     }
     if (has(study_, HandTask::kAlignment)) {
-      addAlignments(person, condition, study_.training.alignments, true);
-      addAlignments(person, condition, study_.alignment.repetitions, false);
+      addAlignments(person, condition, block, study_.training.alignments, true);
+      addAlignments(person, condition, block, study_.alignment.repetitions, false);
     }
   }
 
-  void addPickups(const std::vector<PickupTrialSpec>& all, std::int64_t person, PickupCondition condition, int most,
-                  bool training) {
+  void addPickups(const std::vector<PickupTrialSpec>& all, const HandCondition& condition, int most, bool training) {
     int added = 0;
     for (const PickupTrialSpec& spec : all) {
-      if (spec.participant != person || spec.condition != condition || added == most) continue;
+      if (spec.condition.name != condition.name || added == most) continue;
       ManipulationTrial trial;
       trial.pickup = spec;
       trial.pickup.trial = next();
@@ -64,15 +74,15 @@ class TrialList {
     }
   }
 
-  void addAlignments(std::int64_t person, PickupCondition condition, int count, bool training) {
-    const std::uint64_t person_seed = seedFor(seedFor(study_.seed, static_cast<std::uint64_t>(person)), kAlignmentSeed);
-    const std::uint64_t block_seed =
-        seedFor(person_seed, 2 * static_cast<std::uint64_t>(condition) + (training ? 1 : 0));
-    const std::vector<double> starts = startAngles(study_.alignment, count, block_seed);
+  void addAlignments(std::int64_t person, const HandCondition& condition, int block, int count, bool training) {
+    const std::uint64_t person_seed =
+        seedFor(seedFor(blockSeed(study_, block), static_cast<std::uint64_t>(person)), kAlignmentSeed);
+    const std::uint64_t part_seed = seedFor(person_seed, 2 * seedPartOf(condition) + (training ? 1 : 0));
+    const std::vector<double> starts = startAngles(study_.alignment, count, part_seed);
     for (std::size_t k = 0; k < starts.size(); ++k) {
       ManipulationTrial trial;
       trial.task = HandTask::kAlignment;
-      trial.alignment = {next(), person, index_++, condition, starts[k], seedFor(block_seed, k), training};
+      trial.alignment = {next(), person, index_++, condition, starts[k], seedFor(part_seed, k), training};
       trials_.push_back(trial);
     }
   }
@@ -80,7 +90,7 @@ class TrialList {
   std::int64_t next() const { return static_cast<std::int64_t>(trials_.size()); }
 
   const ManipulationStudy& study_;
-  std::vector<PickupTrialSpec> counted_, trained_;
+  std::vector<PickupTrialSpec> counted_, trained_;  // of one participant in one block
   std::vector<ManipulationTrial> trials_;
   std::int64_t index_ = 0;
 };
@@ -93,10 +103,9 @@ void validate(const ManipulationStudy& study) {
   visitParameters(study.people, RangeCheck("study: people", "people"));
   visitParameters(study.session, RangeCheck("study: session", "session"));
   validate(study.session, "study");
-  requireOneBlock(study.session, "study", true);
   if (study.tasks.empty())
     throw ParameterError("tasks", "study: tasks is empty. Give sphere-pickup, cylinder-alignment, or both.");
-  validate(pickupOf(study, false));
+  validate(pickupOf(study, false, 0));
   CylinderAlignmentOptions alignment = study.alignment;
   alignment.conditions = study.conditions;
   validate(alignment);
@@ -116,13 +125,22 @@ std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study
   return TrialList(study).take();
 }
 
-std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object,
+PickupObjects makePickupObjects(const ManipulationStudy& study) {
+  PickupObjects objects;
+  for (const HandCondition& condition : study.conditions)
+    objects[condition.name] = makePickupObject(inCondition(study.pickup, condition));
+  return objects;
+}
+
+std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObjects& objects,
                                      const ManipulationTrial& trial, RecordSink& sink) {
   std::unique_ptr<HandTrial> made;
+  const HandCondition& condition = trial.condition();
   if (trial.task == HandTask::kPickup) {
-    made = std::make_unique<PickupTrial>(study.pickup, object, trial.pickup, sink);
+    const PickupObject& object = objects.at(condition.name);
+    made = std::make_unique<PickupTrial>(inCondition(study.pickup, condition), object, trial.pickup, sink);
   } else {
-    made = std::make_unique<CylinderTrial>(study.alignment, trial.alignment, sink);
+    made = std::make_unique<CylinderTrial>(inCondition(study.alignment, condition), trial.alignment, sink);
   }
   if (study.frozen_tactor) made->parkTactors();
   return made;
@@ -130,7 +148,7 @@ std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const Picku
 
 std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, const ManipulationTrial& trial) {
   const std::uint64_t seed = seedFor(study.seed, static_cast<std::uint64_t>(trial.participant()));
-  return makeParticipant(study.people, trial.task, seed, trial.condition() == PickupCondition::kCldForce);
+  return makeParticipant(study.people, trial.task, seed, trial.condition().display_tactile);
 }
 
 namespace {
@@ -138,8 +156,7 @@ namespace {
 std::string partName(const ManipulationTrial& spec) {
   const bool training = spec.task == HandTask::kPickup ? spec.pickup.training : spec.alignment.training;
   return fmt::format("{}, {}{}", spec.task == HandTask::kPickup ? "sphere pickup" : "cylinder alignment",
-                     spec.condition() == PickupCondition::kForce ? "force only" : "display and force",
-                     training ? ", training" : "");
+                     spec.condition().label, training ? ", training" : "");
 }
 
 // The text that a person reads before a part.
@@ -185,7 +202,7 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
   auto trials = manipulationTrials(study);
   if (hooks.host.person)
     std::erase_if(trials, [&](const ManipulationTrial& t) { return t.participant() != *hooks.host.person; });
-  const PickupObject object = makePickupObject(study.pickup);
+  const PickupObjects objects = makePickupObjects(study);
   const auto report = [&](std::size_t done) {
     if (hooks.progress) hooks.progress({done, trials.size()});
   };
@@ -198,7 +215,7 @@ std::size_t runManipulationStudy(const ManipulationStudy& study, const ServoOpti
     const std::string part = fmt::format("{}, {}", spec.participant(), partName(spec));
     if (part != begun && hooks.host.show && !hooks.host.show(partPage(study, spec, !begun.empty()))) break;
     begun = part;
-    const std::unique_ptr<HandTrial> trial = makeTrial(study, object, spec, sink);
+    const std::unique_ptr<HandTrial> trial = makeTrial(study, objects, spec, sink);
     const DoneTrial ended = runTrial(study, *trial, spec, servo, interrupted, hooks, {done, trials.size()});
     if (hooks.served) hooks.served(ended.servo);
     if (ended.servo.interrupted) break;

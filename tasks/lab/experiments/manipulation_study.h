@@ -2,12 +2,14 @@
 // dissertation, University of Utah, 2014).
 //
 // 12 participants; both tasks in one condition, then both in the other; every other participant begins with the second
-// condition. Training before each task in each condition. Every trial's seed follows from the study's, the
+// condition. A study file names other conditions, as many as it likes, their order and how often each participant goes
+// through them. Training before each task in each condition. Every trial's seed follows from the study's, the
 // participant's, the condition and the place in it, so that any trial can be done again alone. How many trials of
 // training there are, and which task comes first, is ours.
 #pragma once
 #include <atomic>
 #include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -29,7 +31,7 @@ struct TrainingTrials {
 struct ManipulationStudy {
   int participants = 12;  // 1 .. 1000
   std::uint64_t seed = 1;
-  std::vector<PickupCondition> conditions{PickupCondition::kForce, PickupCondition::kCldForce};
+  std::vector<HandCondition> conditions = publishedHandConditions();
   std::vector<HandTask> tasks{HandTask::kPickup, HandTask::kAlignment};  // done in this order
   TrainingTrials training;
   SpherePickupOptions pickup;          // its participants, conditions and seed don't count here
@@ -54,14 +56,18 @@ struct ManipulationTrial {
 
   std::int64_t trial() const { return task == HandTask::kPickup ? pickup.trial : alignment.trial; }
   std::int64_t participant() const { return task == HandTask::kPickup ? pickup.participant : alignment.participant; }
-  PickupCondition condition() const { return task == HandTask::kPickup ? pickup.condition : alignment.condition; }
+  const HandCondition& condition() const { return task == HandTask::kPickup ? pickup.condition : alignment.condition; }
 };
 
 // Every trial, in the order of its doing. Throws as validate().
 std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study);
 
-// The trial, not begun. `object`: what is picked up (makePickupObject).
-std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObject& object,
+// What is picked up in each condition, by its name. Throws as makePickupObject().
+using PickupObjects = std::map<std::string, PickupObject>;
+PickupObjects makePickupObjects(const ManipulationStudy& study);
+
+// The trial, not begun.
+std::unique_ptr<HandTrial> makeTrial(const ManipulationStudy& study, const PickupObjects& objects,
                                      const ManipulationTrial& trial, RecordSink& sink);
 std::unique_ptr<Participant> makeParticipant(const ManipulationStudy& study, const ManipulationTrial& trial);
 

@@ -14,7 +14,7 @@ constexpr double kFarthest = 0.3;  // [m]
 HandScene makePickupScene(const SpherePickupOptions& options, const PickupObject& object, const PickupTrialSpec& spec) {
   HandScene scene = makeHandScene(options.hand, pickupWorld(options, object.shape, spec.mu_s, spec.mu_d),
                                   {{}, {object.rest_X_WB, Vec3::Zero(), Vec3::Zero()}}, object.place_W,
-                                  object.half_width, spec.condition == PickupCondition::kCldForce);
+                                  object.half_width, spec.condition.display_tactile);
   if (object.felt) grasp::feelAs(scene.model.grasp, kObjectBody, *object.felt);
   scene.object = kObjectBody;
   scene.cues.seed = spec.seed;

@@ -1,6 +1,7 @@
 #include "pincer/tasks/lab/experiments/pickup_trial.h"
 
 #include "pincer/engine/state.h"
+#include "pincer/tasks/lab/experiments/hand_hints.h"
 
 namespace pincer::tasks {
 namespace {
@@ -14,7 +15,7 @@ PickupRules rulesOf(const SpherePickupOptions& options) {
 }
 
 TrialHead headOf(const PickupTrialSpec& spec) {
-  return {"sphere-pickup", spec.trial, spec.participant, spec.index, nameOf(spec.condition), spec.training};
+  return {"sphere-pickup", spec.trial, spec.participant, spec.index, spec.condition.name, spec.training};
 }
 
 }  // namespace
@@ -71,22 +72,28 @@ PickupView PickupTrial::view(bool wants_lift, double time) {
 }
 
 HandGuide PickupTrial::taskGuide() const {
+  // Of the half width: so far over its middle a sphere may be pinched, and so far below it the fingers may stand. The
+  // dish rises to the sides, where open fingers touch it; as they close they slide down to where they are wanted.
+  constexpr double kPinchUp = 0.15, kTooLow = 0.1;
   HandGuide guide;
   const Vec3& middle_W = state().grasp.world.bodies[kObjectBody].X_WI.p;
   guide.goal_height = middle_W.z() - clearance_ + rules_.success_height;
   const bool pinches = touchesObject(0) && touchesObject(1);
+  const double half_width = scene().cues.half_width;
+  const char* reach =
+      reachHint({state().mounts[0].p_WF, state().mounts[1].p_WF, middle_W, half_width, kPinchUp * half_width});
   const double above = 0.5 * (state().mounts[0].p_WF.z() + state().mounts[1].p_WF.z()) - middle_W.z();
-  if (touchesGround()) {
-    guide.hint = "Too low: a finger touches the dish";
+  if (touchesGround() && above < -kTooLow * half_width) {
+    guide.hint = "Too low: a finger touches the dish. Up a little";
   } else if (clearance_ >= rules_.success_height) {
     guide.hint = "Hold it there for a second";
   } else if (pinches) {
     guide.hint = "Lift it to the line";
-  } else if (above > 0.25 * scene().cues.half_width) {
-    guide.hint = "Lower the fingers beside the object";
+  } else if (*reach) {
+    guide.hint = reach;
   } else {
     guide.hint = touchesObject(0) || touchesObject(1) ? "One finger touches: go the other way a little"
-                                                      : "Squeeze: hold the left button";
+                                                      : "Squeeze: hold the left button, or G";
   }
   return guide;
 }

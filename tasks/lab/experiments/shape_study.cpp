@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/study/counterbalance.h"
 
@@ -14,7 +16,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr std::uint64_t kModelOrder = 4, kExplorer = 5, kWayOfPoints = 6, kUnrelated = 7;  // parts of seeds
-constexpr int kRunsOfSession = 4;
+constexpr int kRunsOfGroup = 2;            // in a session, one after the other
 constexpr double kPublishedRight = 0.819;  // of all conditions together
 
 int solidOf(const std::string& name) {
@@ -38,10 +40,10 @@ void requireEven(const char* name, int value) {
 }  // namespace
 
 std::vector<ShapeCondition> ShapeStudy::published() {
-  return {{"facets", "facets, force only", false, false, kPublishedRight},
-          {"facets+cld", "facets, CLD + force", false, true, kPublishedRight},
-          {"shaded", "shaded, force only", true, false, kPublishedRight},
-          {"shaded+cld", "shaded, CLD + force", true, true, kPublishedRight}};
+  return {{"facets", "facets, force only", false, false, 1, kPublishedRight},
+          {"facets+cld", "facets, CLD + force", false, true, 2, kPublishedRight},
+          {"shaded", "shaded, force only", true, false, 1, kPublishedRight},
+          {"shaded+cld", "shaded, CLD + force", true, true, 2, kPublishedRight}};
 }
 
 void validate(const ShapeStudy& s) {
@@ -56,9 +58,10 @@ void validate(const ShapeStudy& s) {
                                      s.tactor_reach, kAsPublished));
   visitParameters(s.session, RangeCheck("shape-identification: session", "session"));
   validate(s.session, "shape-identification");
-  requireOneBlock(s.session, "shape-identification", false);
-  if (s.conditions.empty())
-    throw ParameterError("conditions", "shape-identification: conditions is empty. Give at least one.");
+  requireNamed(s.conditions, "shape-identification");
+  for (std::size_t k = 0; k < s.conditions.size(); ++k)
+    visitParameters(s.conditions[k], RangeCheck("shape-identification: condition " + printable(s.conditions[k].name),
+                                                fmt::format("conditions[{}]", k)));
 }
 
 ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& servo, int stride)
@@ -75,32 +78,45 @@ ShapeExperiment::ShapeExperiment(const ShapeStudy& study, const ServoOptions& se
   }
 }
 
-// Models of the conditions with the display, or of those without. In the first of the two such runs of a session a
-// pointed one points to a side that is drawn, in the second to the other.
-StudyRun ShapeExperiment::runOf(int participant, int run, bool display) const {
+// Models of the group's conditions. In the first of its two runs of a session a pointed one points to a side that is
+// drawn, in the second to the other.
+StudyRun ShapeExperiment::runOf(int participant, int run, int group) const {
   StudyRun shown{participant, run, "", {}, {}};
-  const auto pair = static_cast<std::uint64_t>(participant * study_.sessions * kRunsOfSession + run) / 2;
+  const auto place = static_cast<std::uint64_t>(participant * runsOfPerson() + run), pair = place / kRunsOfGroup;
   Random sides(seedFor(seedFor(study_.seed, kWayOfPoints), pair));
   for (const ShapeCondition& c : study_.conditions) {
     for (const char* solid : kSolidNames) {
-      if (c.display_tactile != display) continue;
+      if (c.group != group) continue;
       const double side = sides.below(2) == static_cast<std::uint64_t>(run % 2) ? 1 : -1;
       shown.list.push_back({solid, isPointed(solid) ? side : std::nan(""), c.name});
     }
   }
-  Random random(seedFor(seedFor(study_.seed, kModelOrder),
-                        static_cast<std::uint64_t>(participant * study_.sessions * kRunsOfSession + run)));
+  Random random(seedFor(seedFor(study_.seed, kModelOrder), place));
   shuffle(shown.list, random);
   return shown;
 }
 
+std::vector<int> ShapeExperiment::groups() const {
+  std::set<int> groups;
+  for (const ShapeCondition& c : study_.conditions) groups.insert(c.group);
+  return {groups.begin(), groups.end()};
+}
+
+int ShapeExperiment::runsOfPerson() const {
+  return study_.sessions * study_.session.blocks * kRunsOfGroup * static_cast<int>(groups().size());
+}
+
+// Every session of a participant has the same order of groups; within it they are gone through `blocks` times.
 std::vector<StudyRun> ShapeExperiment::runs() const {
+  const std::vector<int> groups = this->groups();
   std::vector<StudyRun> runs;
   for (int p = 0; p < study_.participants; ++p) {
-    for (int k = 0; k < study_.sessions * kRunsOfSession; ++k) {
-      const bool second_half = k % kRunsOfSession >= kRunsOfSession / 2;
-      StudyRun run = runOf(p, k, second_half == (p % 2 == 0));
-      if (!run.list.empty()) runs.push_back(std::move(run));
+    int run = 0;
+    for (int pass = 0; pass < study_.sessions * study_.session.blocks; ++pass) {
+      const int block = pass % study_.session.blocks;
+      for (const int place : conditionOrder(study_.session.order, groups.size(), p, block, study_.seed)) {
+        for (int k = 0; k < kRunsOfGroup; ++k) runs.push_back(runOf(p, run++, groups[static_cast<std::size_t>(place)]));
+      }
     }
   }
   return runs;

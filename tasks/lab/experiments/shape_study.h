@@ -2,9 +2,10 @@
 //
 // Source: A. J. Doxon, doctoral dissertation, University of Utah (2014), ch. 2: 18 people; two sessions of
 // four runs, two with the display, then two without, for every other person the reverse; each run shows all
-// 14 models (seven solids, shaded or not) once, shuffled. Cone and tetrahedron point left or right, each once
-// per session and way of rendering. 81.9 % right. A 1-DOF display on a finger of 20 mm radius, as in ch. 2's
-// first experiment (ours); friction 0.1 (ours).
+// 14 models (seven solids, shaded or not) once, shuffled. In a study's file: conditions of one `group` are mixed
+// trial by trial, groups follow each other in the order that the file names. Cone and tetrahedron point left or
+// right, each once per session and way of rendering. 81.9 % right. A 1-DOF display on a finger of 20 mm radius, as in
+// ch. 2's first experiment (ours); friction 0.1 (ours).
 #pragma once
 #include <array>
 
@@ -18,6 +19,7 @@ namespace pincer::tasks {
 struct ShapeCondition {
   std::string name, label;
   bool shaded = true, display_tactile = true;
+  int group = 1;         // of conditions that a run mixes; the lowest comes first where groups are listed
   double published = 0;  // share of right answers; NaN if there is none
 };
 
@@ -55,7 +57,9 @@ class ShapeExperiment final : public Experiment {
  private:
   using Solids = std::array<std::shared_ptr<const contact::SmoothMesh>, kSolids>;
 
-  StudyRun runOf(int participant, int run, bool display) const;
+  std::vector<int> groups() const;  // rising
+  int runsOfPerson() const;
+  StudyRun runOf(int participant, int run, int group) const;
   std::shared_ptr<const contact::SmoothMesh> modelOf(const StudyTrial& trial, const ShapeCondition& condition) const;
   ShapeTrialSetup setupOf(const StudyTrial& trial, const ShapeCondition& condition) const;
 

@@ -4,20 +4,12 @@
 
 #include <algorithm>
 
+#include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/participants/random.h"
 
 namespace pincer::tasks {
 namespace {
-
-void checkConditions(const SpherePickupOptions& o) {
-  if (o.conditions.empty()) throw InputError("sphere-pickup: conditions is empty. Give force, cld+force, or both.");
-  for (auto first = o.conditions.begin(); first != o.conditions.end(); ++first) {
-    if (std::find(first + 1, o.conditions.end(), *first) == o.conditions.end()) continue;
-    throw InputError(
-        fmt::format("sphere-pickup: condition \"{}\" is given twice. Name each condition once.", nameOf(*first)));
-  }
-}
 
 // Every friction `repetitions` times, shuffled (Fisher, Yates).
 std::vector<double> shuffledFrictions(const SpherePickupOptions& options, std::uint64_t seed) {
@@ -29,22 +21,13 @@ std::vector<double> shuffledFrictions(const SpherePickupOptions& options, std::u
   return frictions;
 }
 
-std::vector<PickupCondition> conditionOrder(const SpherePickupOptions& options, std::int64_t participant) {
+std::vector<HandCondition> conditionOrder(const SpherePickupOptions& options, std::int64_t participant) {
   auto order = options.conditions;
   if (participant % 2 == 1) std::reverse(order.begin(), order.end());
   return order;
 }
 
 }  // namespace
-
-std::string nameOf(PickupCondition condition) { return condition == PickupCondition::kForce ? "force" : "cld+force"; }
-
-PickupCondition pickupConditionOf(const std::string& name) {
-  for (const auto condition : {PickupCondition::kForce, PickupCondition::kCldForce}) {
-    if (name == nameOf(condition)) return condition;
-  }
-  throw InputError(fmt::format("sphere-pickup: condition \"{}\" is unknown. It is one of force, cld+force.", name));
-}
 
 void validate(const SpherePickupOptions& options) {
   const RangeCheck check("sphere-pickup", "sphere_pickup");
@@ -54,26 +37,40 @@ void validate(const SpherePickupOptions& options) {
   if (options.frictions.empty())
     throw ParameterError("sphere_pickup.frictions",
                          "sphere-pickup: frictions is empty. Give at least one static friction, for example 0.6.");
-  checkConditions(options);
+  requireNamed(options.conditions, "sphere-pickup");
+  for (const HandCondition& condition : options.conditions) {
+    const SpherePickupOptions changed = inCondition(options, condition);
+    visitParameters(condition, RangeCheck("sphere-pickup: condition " + condition.name, "conditions"));
+    visitParameters(changed, RangeCheck("sphere-pickup: condition " + condition.name, "conditions"));
+  }
 }
 
 std::uint64_t participantSeed(const SpherePickupOptions& options, std::int64_t participant) {
   return seedFor(options.seed, static_cast<std::uint64_t>(participant));
 }
 
+std::vector<PickupTrialSpec> pickupTrialsOf(const SpherePickupOptions& options, std::int64_t participant) {
+  validate(options);
+  std::vector<PickupTrialSpec> trials;
+  const std::uint64_t seed = participantSeed(options, participant);
+  for (const HandCondition& condition : conditionOrder(options, participant)) {
+    const std::uint64_t block_seed = seedFor(seed, 1 + seedPartOf(condition));
+    for (const double mu : shuffledFrictions(options, block_seed)) {
+      const auto index = static_cast<std::int64_t>(trials.size());
+      const std::uint64_t trial_seed = seedFor(block_seed, static_cast<std::uint64_t>(index));
+      trials.push_back({index, participant, index, condition, mu, options.dynamic_ratio * mu, trial_seed});
+    }
+  }
+  return trials;
+}
+
 std::vector<PickupTrialSpec> pickupTrials(const SpherePickupOptions& options) {
   validate(options);
   std::vector<PickupTrialSpec> trials;
   for (std::int64_t participant = 0; participant < options.participants; ++participant) {
-    const std::uint64_t seed = participantSeed(options, participant);
-    std::int64_t index = 0;
-    for (const PickupCondition condition : conditionOrder(options, participant)) {
-      const std::uint64_t block_seed = seedFor(seed, 1 + static_cast<std::uint64_t>(condition));
-      for (const double mu : shuffledFrictions(options, block_seed)) {
-        const auto trial = static_cast<std::int64_t>(trials.size());
-        const std::uint64_t trial_seed = seedFor(block_seed, static_cast<std::uint64_t>(index));
-        trials.push_back({trial, participant, index++, condition, mu, options.dynamic_ratio * mu, trial_seed});
-      }
+    for (PickupTrialSpec& spec : pickupTrialsOf(options, participant)) {
+      spec.trial = static_cast<std::int64_t>(trials.size());
+      trials.push_back(std::move(spec));
     }
   }
   return trials;

@@ -2,10 +2,10 @@
 // dissertation, University of Utah, 2014).
 //
 // Index finger and thumb, facing each other, pick up an object that lies in a shallow dish, without seeing it,
-// under two conditions: force only (tactors parked) and contact location display + force. Every participant does
-// every friction `repetitions` times per condition, in an order shuffled by the seed; every other participant
-// begins with the second condition. Smallest grip that can carry the object: m g / (2 mu). Sizes that Doxon leaves
-// open are ours (docs: design of the tasks).
+// under conditions (hand_condition.h), as published two: force only (tactors parked) and contact location display +
+// force. Every participant does every friction `repetitions` times per condition, in an order shuffled by the seed;
+// every other participant begins with the last condition. Smallest grip that can carry the object: m g / (2 mu).
+// Sizes that Doxon leaves open are ours (docs: design of the tasks).
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -14,13 +14,10 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/contact/surface_contact.h"
+#include "pincer/tasks/lab/experiments/hand_condition.h"
 #include "pincer/tasks/lab/experiments/hand_setup.h"
 
 namespace pincer::tasks {
-
-enum class PickupCondition : std::uint8_t { kForce, kCldForce };
-std::string nameOf(PickupCondition condition);               // "force", "cld+force"
-PickupCondition pickupConditionOf(const std::string& name);  // throws InputError on any other name
 
 struct ObjectFile {
   std::string path;                 // of a closed mesh: OBJ, STL, PLY or OFF
@@ -42,7 +39,7 @@ struct SpherePickupOptions {
   double hold_time = 1.0;         // at that height [s], 0 .. 10
   double timeout = 60;            // [s], 1 .. 600
   int repetitions = 5;            // of every friction per condition, 1 .. 1000
-  std::vector<PickupCondition> conditions{PickupCondition::kForce, PickupCondition::kCldForce};
+  std::vector<HandCondition> conditions = publishedHandConditions();
   int participants = 1;  // 1 .. 1000
   std::uint64_t seed = 1;
   std::optional<ObjectFile> object;  // in place of the sphere
@@ -59,14 +56,16 @@ struct PickupTrialSpec {
   std::int64_t trial = 0;        // within the session, from 0
   std::int64_t participant = 0;  // from 0
   std::int64_t index = 0;        // place in the participant's order, from 0
-  PickupCondition condition = PickupCondition::kForce;
+  HandCondition condition;
   double mu_s = 0.5, mu_d = 0.5;
   std::uint64_t seed = 0;  // of all that varies in this trial
   bool training = false;
 };
 
-// Every trial of the study, in the order of its doing. Throws as validate().
+// Every trial of the study, in the order of its doing; those of one participant, their `trial` from 0. Throws as
+// validate().
 std::vector<PickupTrialSpec> pickupTrials(const SpherePickupOptions& options);
+std::vector<PickupTrialSpec> pickupTrialsOf(const SpherePickupOptions& options, std::int64_t participant);
 
 // The seed of a participant's own constants.
 std::uint64_t participantSeed(const SpherePickupOptions& options, std::int64_t participant);

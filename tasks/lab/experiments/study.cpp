@@ -175,6 +175,20 @@ Order conditionOrder(ConditionOrder order, std::size_t count, std::int64_t parti
   return listed;
 }
 
+void requireNamed(const std::vector<NamedCondition>& conditions, const std::string& of) {
+  if (conditions.empty()) throw ParameterError("conditions", of + ": conditions is empty. Give at least one.");
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    const std::string path = fmt::format("conditions[{}]", k);
+    if (conditions[k].name.empty())
+      throw ParameterError(path, fmt::format("{}: {} has an empty name. Tables need one.", of, path));
+    for (std::size_t other = 0; other < k; ++other) {
+      if (conditions[other].name == conditions[k].name)
+        throw ParameterError(path, fmt::format("{}: condition \"{}\" is given twice. Name each condition once.", of,
+                                               conditions[k].name));
+    }
+  }
+}
+
 std::unique_ptr<WornFinger> Experiment::wornBy(const FingerPlace& place, OneFingerObserver& observer) const {
   if (host_.finger) return host_.finger(place);
   return std::make_unique<SimulatedFinger>(place, observer);

@@ -44,6 +44,13 @@ std::vector<NamedCondition> namedOf(const std::vector<Condition>& conditions) {
   return named;
 }
 
+// Throws ParameterError unless there is at least one, each with a name of its own.
+void requireNamed(const std::vector<NamedCondition>& conditions, const std::string& of);
+template <class Condition>
+void requireNamed(const std::vector<Condition>& conditions, const std::string& of) {
+  requireNamed(namedOf(conditions), of);
+}
+
 // One trial to be presented.
 struct StudyTrial {
   std::int64_t trial = 0, index = 0;  // in the session, in the run

@@ -20,7 +20,8 @@ inline constexpr std::string_view kAsPublished = "Leave it out for the published
 // all 64 bits are read, kept and written
 inline constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::uint64_t>::max();
 
-inline constexpr std::array<std::string_view, 2> kPickupConditionNames = {"force", "cld+force"};
+inline constexpr std::array<std::string_view, 6> kHandShadingNames = {"task",  "smooth",           "facet",
+                                                                      "force", "smooth_published", "exactly"};
 inline constexpr std::array<std::string_view, 2> kHandTaskNames = {"sphere-pickup", "cylinder-alignment"};
 inline constexpr std::array<std::string_view, 2> kStrategyNames = {"rational", "simple"};
 inline constexpr std::array<std::string_view, 3> kTactorUseNames = {"place", "slip", "nothing"};
@@ -123,6 +124,23 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }
 
+template <FieldsOf<LocalisationCondition> Condition, class Visit>
+void visitParameters(Condition& c, Visit&& visit) {
+  visit("name", c.name,
+        Parameter{"one of the published design begins with its values, a new one with those of the first"});
+  visit("label", c.label, Parameter{"in the report"});
+  visit("radius_min", c.radius_min,
+        Parameter{"of the second cylinder [m]; at most `radius_max`", {0.02, 0.2, false, kAsPublished}});
+  visit("radius_max", c.radius_max, Parameter{"[m]", {0.02, 0.2, false, kAsPublished}});
+  visit("backlash", c.backlash, Parameter{"added to the display's own [m]", {0, 0.05, false, kAsPublished}});
+  visit("delay", c.delay, Parameter{"likewise [s], in steps of 0.001", {0, 0.512, false, kAsPublished}});
+  visit("published", c.published,
+        Parameter{"mean absolute error, beside which the measured one is shown [m]; null: none",
+                  {0, 0.1, false, kAsPublished},
+                  {},
+                  true});
+}
+
 template <FieldsOf<LocalisationStudy> Study, class Visit>
 void visitParameters(Study& s, Visit&& visit) {
   visit("participants", s.participants, Parameter{"how many", {1, 10'000, false, kAsPublished}});
@@ -131,14 +149,10 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("spacing", s.spacing, Parameter{"from one to the next [m]; all within 0.016", {0, 0.016, true, kAsPublished}});
   visit("repetitions", s.repetitions, Parameter{"of each place", {1, 1000, false, kAsPublished}});
   visit("least_travel", s.least_travel, Parameter{"of the tactor to its place [m]", {0, 7.9e-3, false, kAsPublished}});
-  visit("radius_min", s.radius_min,
-        Parameter{"of the second cylinder [m]; at most `radius_max`", {0.02, 0.2, false, kAsPublished}});
-  visit("radius_max", s.radius_max, Parameter{"[m]", {0.02, 0.2, false, kAsPublished}});
   visit("base_radius", s.base_radius, Parameter{"of the first cylinder [m]", {0.02, 0.2, false, kAsPublished}});
   visit("finger_radius", s.finger_radius, Parameter{"[m]", {8e-3, 0.05, false, kAsPublished}});
   visit("stiffness", s.stiffness, Parameter{"of the surface [N/m]", {0, 3500, true, kAsPublished}});
-  visit("published_error", s.published_error,
-        Parameter{"mean absolute error, beside which the measured one is shown [m]", {0, 0.1, false, kAsPublished}});
+  visit("conditions", s.conditions, Parameter{"a list replaces all of them"});
   visit("session", s.session, Parameter{"what people read, train and are asked; simulated participants none of it"});
 }
 
@@ -159,6 +173,8 @@ void visitParameters(Condition& c, Visit&& visit) {
   visit("label", c.label, Parameter{"in the report"});
   visit("shaded", c.shaded, Parameter{"false: flat facets"});
   visit("display_tactile", c.display_tactile, Parameter{"false: the tactor is parked"});
+  visit("group", c.group,
+        Parameter{"conditions of one group are mixed trial by trial; `session.order` orders groups", {1, 100}});
   visit("published", c.published,
         Parameter{"share of right answers, beside which the measured one is shown; null: none", {0, 1}, {}, true});
 }
@@ -168,7 +184,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("participants", s.participants, Parameter{"how many", {1, 10'000, false, kAsPublished}});
   visit("seed", s.seed, Parameter{"of all that varies"});
   visit("sessions", s.sessions,
-        Parameter{"per participant, of two runs with the display and two without", {1, 100, false, kAsPublished}});
+        Parameter{"per participant, of two runs of each group of conditions", {1, 100, false, kAsPublished}});
   visit("sizes", s.sizes, Parameter{"of the solids"});
   visit("friction", s.friction, Parameter{"of the solids", {0, 2, false, kAsPublished}});
   visit("finger_radius", s.finger_radius, Parameter{"[m]", {8e-3, 0.03, false, kAsPublished}});
@@ -193,6 +209,19 @@ void visitParameters(Hand& h, Visit&& visit) {
         Parameter{"of the pads about their contact normals [N m/rad]; 0 with no twist_damping: rigid",
                   {0, 10, false, "0.3 is usual."}});
   visit("twist_damping", h.twist_damping, Parameter{"[N m s/rad]", {0, 1, false, "0.001 is usual."}});
+}
+
+template <FieldsOf<HandCondition> Condition, class Visit>
+void visitParameters(Condition& c, Visit&& visit) {
+  visit("name", c.name,
+        Parameter{"one of the published design begins with its values, a new one with those of the first"});
+  visit("label", c.label, Parameter{"that people read"});
+  visit("display_tactile", c.display_tactile, Parameter{"false: the tactors are parked"});
+  visit("shading", c.shading,
+        Parameter{
+            "how fingers feel the objects; task: as the task says, exactly: by closed form", {}, kHandShadingNames});
+  visit("mass_ratio", c.mass_ratio,
+        Parameter{"mass of the objects over the task's", {0.01, 100, false, "1 leaves the task's mass."}});
 }
 
 template <FieldsOf<SpherePickupOptions> Options, class Visit>
@@ -300,7 +329,7 @@ void visitParameters(Study& s, Visit&& visit) {
   visit("participants", s.participants, Parameter{"how many", {1, 1000, false, "The published study had 12."}});
   visit("seed", s.seed, Parameter{"of all that varies"});
   visit("conditions", s.conditions,
-        Parameter{"every other participant begins with the last", {}, kPickupConditionNames});
+        Parameter{"a list replaces all of them; by `session.order` each participant's order"});
   visit("tasks", s.tasks, Parameter{"in this order, in one condition, then in the other", {}, kHandTaskNames});
   visit("frozen_tactor", s.frozen_tactor, Parameter{"true: the tactors stay parked in every condition (a control)"});
   visit("training", s.training, Parameter{"trials that don't count"});

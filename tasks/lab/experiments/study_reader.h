@@ -43,16 +43,17 @@ void readField(const JsonValue& v, std::optional<Field>& field, const Parameter&
   if (v.kind() != JsonValue::Kind::kNull) readField(v, field.emplace(), parameter);
 }
 
-// An item of a list: one with the name of a published one begins as that; one with a new name as the first, but for
-// what is said of that one alone: it is labelled by its name, and nothing was published of it.
+// An item of a list, or its name alone: one with the name of a published one begins as that; one with a new name as
+// the first, but for what is said of that one alone: it is labelled by its name, and nothing was published of it.
 template <class Item>
 Item namedItem(const JsonValue& json, const std::vector<Item>& known) {
-  const std::string& name = json.at("name", "Each condition has one.").text();
+  const bool only_named = json.kind() == JsonValue::Kind::kString;
+  const std::string& name = only_named ? json.text() : json.at("name", "Each condition has one.").text();
   for (const Item& item : known)
     if (item.name == name) return item;
   Item item = known.empty() ? Item{} : known.front();
-  item.label = name;
-  item.published = std::nan("");
+  item.name = item.label = name;
+  if constexpr (requires { item.published; }) item.published = std::nan("");
   return item;
 }
 
@@ -64,8 +65,15 @@ void readField(const JsonValue& v, std::vector<Item>& field, const Parameter& pa
     v.reject(fmt::format("has {} elements; at most {} are allowed.", v.array().size(), kMostInStudyList));
   for (const JsonValue& json : v.array()) {
     Item item{};
-    if constexpr (requires { item.published; }) item = namedItem(json, field);
-    readField(json, item, parameter);
+    if constexpr (requires {
+                    item.name;
+                    item.label;
+                  }) {
+      item = namedItem(json, field);
+      if (json.kind() != JsonValue::Kind::kString) readField(json, item, parameter);
+    } else {
+      readField(json, item, parameter);
+    }
     list.push_back(std::move(item));
   }
   field = std::move(list);

@@ -106,13 +106,13 @@ StudyMeasures measuresOf(const std::vector<TrialRecord>& trials) {
   StudyMeasures measures;
   measures.persons = of_person.size();
   for (const auto& [person, own] : of_person) {
-    const PersonMeans means = personMeans(own);
+    const std::vector<double> force = personMeans(own, "force"), cld = personMeans(own, "cld+force");
     for (std::size_t m = 0; m < findingMeasures().size(); ++m) {
       const auto name = names.find(findingMeasures()[m].key);
       if (name == names.end()) continue;
-      measures.people[name->second + ":force"].push_back(means.force[m]);
-      measures.people[name->second + ":cld"].push_back(means.cld[m]);
-      measures.people[name->second + ":longer"].push_back(means.cld[m] - means.force[m]);
+      measures.people[name->second + ":force"].push_back(force[m]);
+      measures.people[name->second + ":cld"].push_back(cld[m]);
+      measures.people[name->second + ":longer"].push_back(cld[m] - force[m]);
     }
   }
   return measures;

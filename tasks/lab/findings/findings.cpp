@@ -15,6 +15,11 @@ namespace {
 constexpr double kSignificant = 0.05;  // of p: level of significance
 constexpr int kFewest = 4;             // with fewer not even all of them are certainly more than half (Wilson)
 
+// The means of one participant, one per measure.
+struct PersonMeans {
+  std::vector<double> force, cld;
+};
+
 // The participants' means of every session that is whole.
 std::vector<std::vector<PersonMeans>> experimentsOf(const std::vector<std::string>& sessions, std::string& hash) {
   std::vector<std::vector<PersonMeans>> experiments;
@@ -25,7 +30,8 @@ std::vector<std::vector<PersonMeans>> experimentsOf(const std::vector<std::strin
     std::map<std::int64_t, std::vector<TrialRecord>> people;
     for (TrialRecord& trial : session.trials()) people[trial.participant].push_back(std::move(trial));
     experiments.emplace_back();
-    for (const auto& [person, trials] : people) experiments.back().push_back(personMeans(trials));
+    for (const auto& [person, trials] : people)
+      experiments.back().push_back({personMeans(trials, "force"), personMeans(trials, "cld+force")});
   }
   return experiments;
 }

@@ -24,8 +24,9 @@ struct TrialTrace {
   TrialRecord trial;
   std::vector<SampleRecord> samples;
   std::vector<EventRecord> events;
+  std::string label;  // of its condition
 };
-TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial);
+TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial, const std::string& label);
 
 // Over the trial's time: events, height, grip forces, each finger's friction
 // against its limit. `trace` must hold a sample.
@@ -37,8 +38,8 @@ Figure tactorFigure(const TrialTrace& trace);
 // "trial 7 (participant 0, µₛ 0.45)".
 std::string trialWords(const TrialRecord& trial);
 
-// Each participant in both conditions, joined by a line: squeezes and time per sphere, error and time of alignment.
-// Nothing with fewer than two participants in both.
+// Each participant in all conditions, joined by a line: squeezes and time per sphere, error and time of alignment.
+// Nothing with fewer than two participants in the first and another.
 std::optional<Figure> peopleFigure(const SessionSummary& summary);
 
 // True unless all tactors were parked throughout the trial.
@@ -58,11 +59,12 @@ std::string fileNamePart(const std::string& text);
 
 namespace palette {
 constexpr const char *kBlue = "#0072B2", *kVermillion = "#D55E00", *kGreen = "#009E73", *kPurple = "#CC79A7",
-                     *kOrange = "#E69F00", *kInk = "#222222", *kGrey = "#999999";
+                     *kOrange = "#E69F00", *kSkyBlue = "#56B4E9", *kInk = "#222222", *kGrey = "#999999";
 }  // namespace palette
 
 // One colour for one meaning in all figures: conditions blue, vermillion ...; fingers green and purple.
 const char* conditionColour(std::size_t condition);
+int conditionPoint(std::size_t condition);  // gnuplot's number of its mark
 
 struct FingerStyle {
   const char *name, *colour;

@@ -43,7 +43,7 @@ Figure alignmentFigure(const SessionSummary& summary, const std::vector<TrialRec
   for (std::size_t c = 0; c < summary.conditions.size(); ++c) {
     double error = 0, time = 0;
     int n = 0, answered = 0;
-    tics += fmt::format("{}{} {}", c ? ", " : "", gnuplotTic(conditionLabel(summary.conditions[c])), c);
+    tics += fmt::format("{}{} {}", c ? ", " : "", gnuplotTic(summary.labels[c]), c);
     for (const TrialRecord& t : trials) {
       if (t.condition != summary.conditions[c] || t.outcome == "fault") continue;
       const bool timeout = t.outcome == "timeout";
@@ -78,7 +78,7 @@ Figure turnFigure(const TrialTrace& trace) {
   PINCER_ASSERT(!trace.samples.empty());
   Figure figure;
   figure.name = "turn_" + fileNamePart(trace.trial.condition);
-  figure.title = fmt::format("{}: a trial of alignment", conditionLabel(trace.trial.condition));
+  figure.title = fmt::format("{}: a trial of alignment", trace.label);
   figure.caption = fmt::format(
       "Trial {}, participant {}. Top: direction of the flat from the monitor; bottom: normal forces of both fingers.",
       trace.trial.trial + 1, trace.trial.participant + 1);

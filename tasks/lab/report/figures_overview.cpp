@@ -14,14 +14,19 @@ namespace pincer::tasks {
 namespace {
 
 // On the category axis, whose unit is the step from one friction to the next.
-constexpr double kDodge = 0.30;       // from one condition to the next
-constexpr double kDotsAside = -0.10;  // the trials' dots stand left of their mean
-constexpr double kSpread = 0.12;      // and fill this width
+constexpr double kWidth = 0.6;        // that the conditions of a friction share, of two
+constexpr double kDotsAside = -0.33;  // of a condition's width: the trials' dots stand left of their mean
+constexpr double kSpread = 0.4;       // of it that they fill
+
+// From one condition to the next.
+double dodgeOf(const SessionSummary& s) {
+  return kWidth / static_cast<double>(std::max<std::size_t>(2, s.conditions.size()));
+}
 
 double positionOf(const SessionSummary& s, double mu_s, std::size_t condition) {
   const auto friction = std::lower_bound(s.frictions.begin(), s.frictions.end(), mu_s) - s.frictions.begin();
   return static_cast<double>(friction) +
-         kDodge * (static_cast<double>(condition) - 0.5 * static_cast<double>(s.conditions.size() - 1));
+         dodgeOf(s) * (static_cast<double>(condition) - 0.5 * static_cast<double>(s.conditions.size() - 1));
 }
 
 std::size_t placeOf(const SessionSummary& s, const std::string& condition) {
@@ -54,7 +59,8 @@ std::string trialsCsv(const SessionSummary& s, const std::vector<TrialRecord>& t
       const double share =
           of_cell.size() < 2 ? 0 : static_cast<double>(i) / static_cast<double>(of_cell.size() - 1) - 0.5;
       table.row(t.trial + 1, t.participant + 1, t.condition, cell.first, t.mu_s,
-                positionOf(s, t.mu_s, cell.first) + kDotsAside + kSpread * share, t.outcome, kMeasures[m].of(t));
+                positionOf(s, t.mu_s, cell.first) + dodgeOf(s) * (kDotsAside + kSpread * share), t.outcome,
+                kMeasures[m].of(t));
     }
   }
   return table.take();
@@ -78,33 +84,43 @@ std::string conditionPlots(const SessionSummary& s, const std::string& name) {
         k ? "," : "plot", name, k, colour + 1);
     plots += fmt::format(
         ", data skip 1 using ($2=={} ? $4 : NaN):6:7:8 with yerrorbars pt {} ps 2.6 lw 2 lc rgb '{}' title {}", k,
-        k % 2 ? 5 : 7, colour, gnuplotString(conditionLabel(s.conditions[k])));
+        conditionPoint(k), colour, gnuplotString(s.labels[k]));
     plots += fmt::format(
         ", data skip 1 using ($2=={} && $9==1 ? $4 : NaN):6 with points pt 7 ps 1.3 lc rgb '#ffffff' notitle", k);
   }
   return plots + "\n";
 }
 
-// At how many frictions the last condition's mean is the smaller.
+// At how many frictions each condition's mean is smaller than the first's.
 std::string orderWords(const SessionSummary& s, std::size_t m) {
-  if (s.conditions.size() != 2) return "how the means rise or fall with friction";
-  std::map<double, std::array<double, 2>> means;
+  if (s.conditions.size() < 2) return "how the means rise or fall with friction";
+  std::map<double, std::vector<double>> means;
   for (const CellSummary& c : s.cells) {
     if (!c.allFrictions())
-      means.try_emplace(c.mu_s, std::array<double, 2>{NAN, NAN}).first->second[placeOf(s, c.condition)] =
-          c.measures[m].mean;
+      means.try_emplace(c.mu_s, s.conditions.size(), NAN).first->second[placeOf(s, c.condition)] = c.measures[m].mean;
   }
-  const auto lower =
-      std::count_if(means.begin(), means.end(), [](const auto& at) { return at.second[1] < at.second[0]; });
-  return fmt::format("the mean of {} lies below that of {} at {} of {} frictions", conditionLabel(s.conditions[1]),
-                     conditionLabel(s.conditions[0]), lower, means.size());
+  std::string words;
+  for (std::size_t k = 1; k < s.conditions.size(); ++k) {
+    const auto lower =
+        std::count_if(means.begin(), means.end(), [k](const auto& at) { return at.second[k] < at.second[0]; });
+    words += fmt::format("{} {} at {} of {} frictions", k == 1 ? "the mean of" : ", that of", s.labels[k], lower,
+                         means.size());
+    if (k == 1) words.insert(words.rfind(" at "), fmt::format(" lies below that of {}", s.labels[0]));
+  }
+  return words;
 }
 
 }  // namespace
 
 const char* conditionColour(std::size_t condition) {
-  constexpr std::array<const char*, 4> kColours{palette::kBlue, palette::kVermillion, palette::kOrange, palette::kInk};
+  constexpr std::array<const char*, 6> kColours{palette::kBlue,    palette::kVermillion, palette::kOrange,
+                                                palette::kSkyBlue, palette::kInk,        palette::kGrey};
   return kColours[condition % kColours.size()];
+}
+
+int conditionPoint(std::size_t condition) {
+  constexpr std::array<int, 4> kDiscSquareTriangleDiamond{7, 5, 9, 13};
+  return kDiscSquareTriangleDiamond[condition % kDiscSquareTriangleDiamond.size()];
 }
 
 std::string figurePrelude(const std::string& name) {

@@ -14,88 +14,106 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kShown{"tries", "pickup_time", "alignment_error", "alignment_time"};
 
-std::vector<const PairedRow*> shownRows(const SessionSummary& s) {
-  std::vector<const PairedRow*> rows;
-  for (const PairedRow& row : s.pairs) {
+std::vector<const MeasureRow*> shownRows(const SessionSummary& s) {
+  std::vector<const MeasureRow*> rows;
+  for (const MeasureRow& row : s.rows) {
     const bool is_shown = std::find(kShown.begin(), kShown.end(), findingMeasures()[row.measure].key) != kShown.end();
-    if (is_shown && row.test.n >= 2) rows.push_back(&row);
+    const bool paired = std::any_of(row.tests.begin(), row.tests.end(), [](const PairedTest& t) { return t.n >= 2; });
+    if (is_shown && paired) rows.push_back(&row);
   }
   return rows;
 }
 
 std::string measureText(const FindingMeasure& m) { return *m.unit ? fmt::format("{} [{}]", m.label, m.unit) : m.label; }
 
-// "squeezes per sphere picked up: lower with the display for 10 of 12".
-std::string whatIsSeen(const std::vector<const PairedRow*>& rows) {
+// "squeezes per sphere picked up, lower in CLD + force than in force only for 10 of 12".
+std::string whatIsSeen(const SessionSummary& s, const std::vector<const MeasureRow*>& rows) {
   std::string words;
-  for (const PairedRow* row : rows) {
-    words += fmt::format("{}{}, lower with the display for {} of {}", words.empty() ? "" : "; ",
-                         findingMeasures()[row->measure].label, row->test.lower, row->test.n);
+  for (const MeasureRow* row : rows) {
+    words += fmt::format("{}{}, lower than in {}", words.empty() ? "" : "; ", findingMeasures()[row->measure].label,
+                         s.labels[0]);
+    for (std::size_t k = 0; k < row->tests.size(); ++k)
+      words +=
+          fmt::format("{} in {} for {} of {}", k > 0 ? "," : "", s.labels[k + 1], row->tests[k].lower, row->tests[k].n);
   }
   return words;
 }
 
-// Rows of the panel: means, intervals and participants.
-double highest(const PairedRow& row) {
+// Of means, intervals and participants.
+double highest(const MeasureRow& row) {
   const Averaged averaged = findingMeasures()[row.measure].averaged;
-  double high = std::max({intervalOf(row.force, averaged).high, intervalOf(row.cld, averaged).high, 1e-9});
-  for (const auto* values : {&row.force_of, &row.cld_of}) {
-    for (const double value : *values) high = std::isfinite(value) ? std::max(high, value) : high;
+  double high = 1e-9;
+  for (std::size_t c = 0; c < row.means.size(); ++c) {
+    const double end = intervalOf(row.means[c], averaged).high;
+    high = std::isfinite(end) ? std::max(high, end) : high;
+    for (const double value : row.of[c]) high = std::isfinite(value) ? std::max(high, value) : high;
   }
   return high;
 }
 
-std::string panelOf(const PairedRow& row, std::size_t index) {
+// Columns of people.csv: panel, participant, condition, value, the next condition's; of people_means.csv: panel,
+// condition, mean, its interval.
+std::string panelOf(const MeasureRow& row, std::size_t index) {
   std::string label = measureText(findingMeasures()[row.measure]);
   label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
-  const std::string own = fmt::format("skip 1 using ($1=={} ? ", index);
   std::string script = fmt::format("set title {}\nset yrange [0:{:.6g}]\n", gnuplotString(label), 1.08 * highest(row));
   script += fmt::format(
-      "plot 'people.csv' {}0 : NaN):3:(1):($4-$3) with vectors nohead lw 0.8 lc rgb '#90222222' notitle", own);
-  for (const int condition : {0, 1}) {
-    const char* colour = conditionColour(static_cast<std::size_t>(condition));
-    script += fmt::format(", 'people.csv' {}{} : NaN):{} with points pt 7 ps 1.5 lc rgb '#40{}' notitle", own,
-                          condition, condition + 3, colour + 1);
-    script +=
-        fmt::format(", 'people_means.csv' {}{} : NaN):{}:{}:{} with yerrorbars pt {} ps 2.2 lw 2 lc rgb '{}' notitle",
-                    own, condition == 0 ? -0.25 : 1.25, 3 * condition + 2, 3 * condition + 3, 3 * condition + 4,
-                    condition ? 5 : 7, colour);
+      "plot 'people.csv' skip 1 using ($1=={} ? $3 : NaN):4:(1):($5-$4) with vectors nohead lw 0.8 lc rgb '#90222222' "
+      "notitle",
+      index);
+  for (std::size_t c = 0; c < row.means.size(); ++c) {
+    const char* colour = conditionColour(c);
+    const std::string own = fmt::format("skip 1 using ($1=={} && ", index);
+    script += fmt::format(", 'people.csv' {}$3=={} ? $3 : NaN):4 with points pt 7 ps 1.5 lc rgb '#40{}' notitle", own,
+                          c, colour + 1);
+    // at the ends beside the dots, else among them
+    const double aside = c == 0 ? -0.25 : c + 1 == row.means.size() ? 0.25 : 0.12;
+    script += fmt::format(
+        ", 'people_means.csv' {}$2=={} ? $2+{} : NaN):3:4:5 with yerrorbars pt {} ps 2.2 lw 2 lc rgb '{}' notitle", own,
+        c, aside, conditionPoint(c), colour);
   }
   return script + "\n";
+}
+
+void addRows(const MeasureRow& row, std::size_t panel, PlotTable& people, PlotTable& means) {
+  for (std::size_t c = 0; c < row.means.size(); ++c) {
+    const Interval interval = intervalOf(row.means[c], findingMeasures()[row.measure].averaged);
+    means.row(panel, c, row.means[c].mean, interval.low, interval.high);
+    for (std::size_t k = 0; k < row.of[c].size(); ++k)
+      people.row(panel, k + 1, c, row.of[c][k], c + 1 < row.of.size() ? row.of[c + 1][k] : NAN);
+  }
 }
 
 }  // namespace
 
 std::optional<Figure> peopleFigure(const SessionSummary& s) {
-  const std::vector<const PairedRow*> rows = shownRows(s);
+  const std::vector<const MeasureRow*> rows = shownRows(s);
   if (rows.empty()) return std::nullopt;
-  PlotTable people{"panel", "participant", "force", "cld"},
-      means{"panel", "force", "force_low", "force_high", "cld", "cld_low", "cld_high"};
-  std::string panels;
+  PlotTable people{"panel", "participant", "condition_index", "value", "in_the_next"},
+      means{"panel", "condition_index", "mean", "ci95_low", "ci95_high"};
+  std::string panels, tics;
+  for (std::size_t c = 0; c < s.labels.size(); ++c)
+    tics += fmt::format("{}{} {}", c ? ", " : "", gnuplotTic(s.labels[c]), c);
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const PairedRow& row = *rows[i];
-    const Averaged averaged = findingMeasures()[row.measure].averaged;
-    const Interval force = intervalOf(row.force, averaged), cld = intervalOf(row.cld, averaged);
-    for (std::size_t k = 0; k < row.force_of.size(); ++k) people.row(i, k + 1, row.force_of[k], row.cld_of[k]);
-    means.row(i, row.force.mean, force.low, force.high, row.cld.mean, cld.low, cld.high);
-    panels += panelOf(row, i);
+    addRows(*rows[i], i, people, means);
+    panels += panelOf(*rows[i], i);
   }
   Figure figure;
   figure.name = "people";
-  figure.title = "Each participant in both conditions";
+  figure.title = "Each participant in all conditions";
   figure.caption = fmt::format(
       "To see: {}. Small dots: means of one participant, joined by a line. Large marks: means over the participants "
-      "with their 95 % "
-      "confidence "
-      "intervals.",
-      whatIsSeen(rows));
-  const std::size_t columns = std::min<std::size_t>(2, rows.size()), lines = (rows.size() + columns - 1) / columns;
+      "with their 95 % confidence intervals.",
+      whatIsSeen(s, rows));
+  // more than two labels need the width
+  const std::size_t columns = s.labels.size() > 2 ? 1 : std::min<std::size_t>(2, rows.size()),
+                    lines = (rows.size() + columns - 1) / columns;
   figure.height = static_cast<int>(60 + 560 * lines);
   figure.data = {{"people.csv", people.take()}, {"people_means.csv", means.take()}};
-  figure.script =
-      figurePrelude(figure.name) +
-      fmt::format("set multiplot layout {},{}\nset xtics ('force only' 0, 'CLD + force' 1) scale 0\n", lines, columns) +
-      "set xrange [-0.6:1.6]\n" + panels + "unset multiplot\n";
+  figure.script = figurePrelude(figure.name) +
+                  fmt::format("set multiplot layout {},{}\nset xtics ({}) scale 0\nset xrange [-0.6:{}.6]\n", lines,
+                              columns, tics, s.labels.size() - 1) +
+                  panels + "unset multiplot\n";
   return figure;
 }
 

@@ -93,7 +93,7 @@ Figure tactorFigure(const TrialTrace& trace) {
   const std::size_t last = trace.samples.size() - 1;
   Figure figure;
   figure.name = "tactor_" + fileNamePart(trace.trial.condition);
-  figure.title = fmt::format("{}: tactors on the fingerpads", conditionLabel(trace.trial.condition));
+  figure.title = fmt::format("{}: tactors on the fingerpads", trace.label);
   figure.caption = caption(trace);
   figure.height = 900;
   figure.data = {{figure.name + ".csv", placesCsv(trace)}};

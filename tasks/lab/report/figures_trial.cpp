@@ -159,8 +159,8 @@ std::optional<TrialRecord> representativeTrial(const std::vector<TrialRecord>& t
                        [&](const TrialRecord& t) { return t.squeezes == median; });
 }
 
-TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial) {
-  TrialTrace trace{trial, {}, session.events(trial.trial)};
+TrialTrace traceOf(const SessionReader& session, const TrialRecord& trial, const std::string& label) {
+  TrialTrace trace{trial, {}, session.events(trial.trial), label};
   session.forEachSample({.trial = trial.trial}, [&](const SampleRecord& s) { trace.samples.push_back(s); });
   return trace;
 }
@@ -175,7 +175,7 @@ Figure trialFigure(const TrialTrace& trace) {
   const Ranges r = rangesOf(trace);
   Figure figure;
   figure.name = "trial_" + fileNamePart(trace.trial.condition);
-  figure.title = fmt::format("{}: a representative trial", conditionLabel(trace.trial.condition));
+  figure.title = fmt::format("{}: a representative trial", trace.label);
   figure.caption = fmt::format(
       "This is {}; squeezes: {}, the median of the condition. From the top: events; height of the object above its "
       "start; normal "

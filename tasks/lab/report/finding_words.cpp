@@ -29,76 +29,97 @@ std::string chanceWords(double p) {
 
 std::string unitOf(const FindingMeasure& m) { return *m.unit ? fmt::format(" {}", m.unit) : ""; }
 
-std::string comparisonWords(const PairedRow& row) {
-  const FindingMeasure& m = findingMeasures()[row.measure];
-  const PairedTest& test = row.test;
-  const std::string unit = unitOf(m);
-  std::string head = m.label;
-  head[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(head[0])));
-  std::string words = fmt::format("{}: {:.2f}{} by force only, {:.2f}{} with the display", head, row.force.mean, unit,
-                                  row.cld.mean, unit);
-  if (test.n < 2) return words + "; one person says nothing about others";
-  const double low = test.difference.mean - test.difference.half_width,
-               high = test.difference.mean + test.difference.half_width;
-  words +=
-      fmt::format("; difference {:+.2f}{} (95 % interval {:+.2f} to {:+.2f})", test.difference.mean, unit, low, high);
-  const bool less = test.difference.mean < 0;
-  return words + fmt::format(", {} for {} of {} people; {}", less ? "less" : "more", less ? test.lower : test.higher,
-                             test.n, chanceWords(test.p_wilcoxon));
+// "by force only", "with the display"; of a study's own conditions "in " and the label.
+std::string inWords(const SessionSummary& s, std::size_t condition) {
+  if (s.labels[condition] == "force only") return "by force only";
+  if (s.labels[condition] == "CLD + force") return "with the display";
+  return fmt::format("in \"{}\"", s.labels[condition]);
 }
 
-std::string verdictWords(const PairedRow& row) {
-  if (row.test.n < 2) return "More people are needed for a finding.";
-  if (row.test.p_wilcoxon < kChanceLimit)
-    return fmt::format("So the display {} it.", row.test.difference.mean < 0 ? "lowers" : "raises");
-  return "So no effect of the display is shown; that isn't to say that there is none.";
+// True of the published pair, whose difference is the display.
+bool isTheDisplay(const SessionSummary& s) { return s.conditions == std::vector<std::string>{"force", "cld+force"}; }
+
+std::string meanWords(const SessionSummary& s, const MeasureRow& row) {
+  const FindingMeasure& m = findingMeasures()[row.measure];
+  std::string words = m.label;
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  for (std::size_t k = 0; k < row.means.size(); ++k)
+    words += fmt::format("{} {:.2f}{} {}", k == 0 ? ":" : ",", row.means[k].mean, unitOf(m), inWords(s, k));
+  return words;
+}
+
+// One condition against the first. `p`: adjusted, where several are compared.
+std::string comparisonWords(const MeasureRow& row, std::size_t k, double p) {
+  const PairedTest& test = row.tests[k];
+  const std::string unit = unitOf(findingMeasures()[row.measure]);
+  const double low = test.difference.mean - test.difference.half_width,
+               high = test.difference.mean + test.difference.half_width;
+  const bool less = test.difference.mean < 0;
+  return fmt::format("difference {:+.2f}{} (95 % interval {:+.2f} to {:+.2f}), {} for {} of {} people; {}",
+                     test.difference.mean, unit, low, high, less ? "less" : "more", less ? test.lower : test.higher,
+                     test.n, chanceWords(p));
+}
+
+std::string verdictWords(const SessionSummary& s, const MeasureRow& row, std::size_t k, double p) {
+  const bool less = row.tests[k].difference.mean < 0, shown = p < kChanceLimit;
+  if (isTheDisplay(s))
+    return shown ? fmt::format("So the display {} it.", less ? "lowers" : "raises")
+                 : "So no effect of the display is shown; that isn't to say that there is none.";
+  return shown ? fmt::format("So it is {} {} than {}.", less ? "less" : "more", inWords(s, k + 1), inWords(s, 0))
+               : fmt::format("So no difference {} is shown; that isn't to say that there is none.", inWords(s, k + 1));
 }
 
 // The other measures of the task that differ all the same.
-std::string otherWords(const std::vector<PairedRow>& rows, std::size_t primary) {
+std::string otherWords(const SessionSummary& s, const std::vector<MeasureRow>& rows) {
   std::vector<double> p;
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    p.push_back(k == primary || rows[k].test.n < 2 ? std::nan("") : rows[k].test.p_wilcoxon);
-  const std::vector<double> adjusted = holmAdjusted(p);
-  const auto looked = std::count_if(p.begin(), p.end(), [](double x) { return x == x; });
-  std::string differ;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (adjusted[k] < kChanceLimit)
-      differ += fmt::format("{}{} ({:+.2f})", differ.empty() ? "" : ", ", findingMeasures()[rows[k].measure].label,
-                            rows[k].test.difference.mean);
+  std::vector<std::string> names;
+  std::size_t measures = 0;
+  for (std::size_t r = 1; r < rows.size(); ++r) {
+    bool looked = false;
+    for (std::size_t k = 0; k < rows[r].tests.size(); ++k) {
+      const PairedTest& test = rows[r].tests[k];
+      p.push_back(test.n < 2 ? std::nan("") : test.p_wilcoxon);
+      names.push_back(fmt::format("{}{} ({:+.2f})", findingMeasures()[rows[r].measure].label,
+                                  isTheDisplay(s) ? "" : " " + inWords(s, k + 1), test.difference.mean));
+      looked = looked || p.back() == p.back();
+    }
+    measures += looked;
   }
-  if (looked == 0) return "";
-  return differ.empty()
-             ? fmt::format("None of the {} looked at differs beyond chance (Holm).", counted(looked, "other measure"))
-             : fmt::format("Of the {} looked at, these differ as well (Holm): {}.", counted(looked, "other measure"),
-                           differ);
+  const std::vector<double> adjusted = holmAdjusted(p);
+  std::string differ;
+  for (std::size_t k = 0; k < p.size(); ++k)
+    if (adjusted[k] < kChanceLimit) differ += (differ.empty() ? "" : ", ") + names[k];
+  if (measures == 0) return "";
+  const std::string looked = counted(static_cast<std::int64_t>(measures), "other measure");
+  return differ.empty() ? fmt::format("None of the {} looked at differs beyond chance (Holm).", looked)
+                        : fmt::format("Of the {} looked at, these differ as well (Holm): {}.", looked, differ);
 }
 
 std::string taskWords(const SessionSummary& s, bool pickup) {
-  std::vector<PairedRow> rows;
-  std::copy_if(s.pairs.begin(), s.pairs.end(), std::back_inserter(rows), [&](const PairedRow& row) {
-    return findingMeasures()[row.measure].of_pickup == pickup && row.force.n > 0 && row.cld.n > 0;
+  std::vector<MeasureRow> rows;
+  std::copy_if(s.rows.begin(), s.rows.end(), std::back_inserter(rows), [&](const MeasureRow& row) {
+    const auto known = std::count_if(row.means.begin(), row.means.end(), [](const Estimate& e) { return e.n > 0; });
+    return findingMeasures()[row.measure].of_pickup == pickup && known > 1 && row.means[0].n > 0;
   });
   if (rows.empty()) return "";
-  const std::string others = rows[0].test.n < 2 ? "" : otherWords(rows, 0);  // the list begins with the one that counts
-  return fmt::format("{}. {}{}{}", comparisonWords(rows[0]), verdictWords(rows[0]), others.empty() ? "" : " ", others);
+  const MeasureRow& primary = rows[0];  // the list begins with the one that counts
+  std::string words = meanWords(s, primary);
+  const bool alone = std::all_of(primary.tests.begin(), primary.tests.end(), [](const auto& t) { return t.n < 2; });
+  if (alone) return words + "; one person says nothing about others. More people are needed for a finding.";
+  const std::vector<double> adjusted = primary.adjusted();
+  const bool several = primary.tests.size() > 1;
+  for (std::size_t k = 0; k < primary.tests.size(); ++k) {
+    if (primary.tests[k].n < 2) continue;
+    words +=
+        several ? fmt::format("{} \"{}\" against \"{}\": ", k == 0 ? "." : "", s.labels[k + 1], s.labels[0]) : "; ";
+    words += comparisonWords(primary, k, adjusted[k]) + ". " + verdictWords(s, primary, k, adjusted[k]);
+  }
+  if (several) words += fmt::format(" Chances are Holm's, for {} comparisons.", primary.tests.size());
+  const std::string others = otherWords(s, rows);
+  return words + (others.empty() ? "" : " " + others);
 }
 
 }  // namespace
-
-std::vector<double> holmAdjusted(const std::vector<double>& p) {
-  std::vector<std::size_t> order(p.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::erase_if(order, [&](std::size_t k) { return p[k] != p[k]; });
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
-  std::vector<double> adjusted(p.size(), std::nan(""));
-  double largest = 0;
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    largest = std::max(largest, std::min(1.0, static_cast<double>(order.size() - rank) * p[order[rank]]));
-    adjusted[order[rank]] = largest;
-  }
-  return adjusted;
-}
 
 std::vector<std::string> findingWords(const SessionSummary& s) {
   std::vector<std::string> words;

@@ -16,7 +16,4 @@ namespace pincer::tasks {
 // One sentence or a few per task; at least one.
 std::vector<std::string> findingWords(const SessionSummary& summary);
 
-// Holm's adjusted p of each; NaN counts as never looked at.
-std::vector<double> holmAdjusted(const std::vector<double>& p);
-
 }  // namespace pincer::tasks

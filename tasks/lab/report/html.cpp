@@ -28,22 +28,22 @@ std::string cellTable(const SessionSummary& s) {
   if (s.cells.empty()) return s.trials > 0 ? "" : "<p>No trial was finished.</p>\n";
   std::string html = "<div class=\"wide\"><table>\n" + htmlRow(tableHeads(), "th");
   for (const CellSummary& cell : s.cells)
-    html += htmlRowOfIntervals(tableRow(cell), cell.allFrictions() ? " class=\"all\"" : "");
+    html += htmlRowOfIntervals(tableRow(s, cell), cell.allFrictions() ? " class=\"all\"" : "");
   return fmt::format("{}</table></div>\n<p class=\"note\">{}</p>\n", html, escaped(tableNote(s)));
 }
 
 std::string pairTable(const SessionSummary& s) {
-  if (s.pairs.empty()) return "";
-  std::string html = "<h2>The conditions compared</h2>\n<div class=\"wide\"><table>\n" + htmlRow(pairHeads(), "th");
-  for (const PairedRow& row : s.pairs) html += htmlRowOfIntervals(pairTexts(row));
-  return html +
-         "</table></div>\n<p class=\"note\">Means over the participants with their 95 % intervals (Student t; of the "
-         "logarithm, of shares "
-         "the logit); difference: CLD + force "
-         "minus force "
-         "only; d_z: mean over standard deviation of the participants' differences; paired t-test and Wilcoxon's "
-         "signed ranks (exact). "
-         "Time-outs are censored: counts and times are per success.</p>\n";
+  if (s.rows.empty() || s.conditions.size() < 2) return "";
+  std::string html = "<h2>The conditions compared</h2>\n<div class=\"wide\"><table>\n" + htmlRow(pairHeads(s), "th");
+  for (const std::vector<std::string>& row : pairTexts(s)) html += htmlRowOfIntervals(row);
+  const bool several = s.conditions.size() > 2;
+  return html + fmt::format(
+                    "</table></div>\n<p class=\"note\">Means over the participants with their 95 % intervals (Student "
+                    "t; of the logarithm, of shares the logit); difference: {} minus {}; d_z: mean over standard "
+                    "deviation of the participants' differences; paired t-test and Wilcoxon's signed ranks (exact){}. "
+                    "Time-outs are censored: counts and times are per success.</p>\n",
+                    escaped(several ? "the other condition" : s.labels[1]), escaped(s.labels[0]),
+                    several ? "; Holm: p (Wilcoxon) adjusted for the comparisons of the measure" : "");
 }
 
 std::string number(double value, double scale, int digits) {
@@ -58,8 +58,8 @@ std::string trialCell(std::int64_t trial, const ReplayPage& replay) {
                      trial + 1);
 }
 
-std::string trialList(const std::vector<TrialRecord>& trials, const ReplayPage& replay) {
-  std::string html = "<h2>All trials</h2>\n<div class=\"wide\"><table>\n" +
+std::string trialList(const SessionSummary& s, const std::vector<TrialRecord>& trials, const ReplayPage& replay) {
+  std::string html = "<h2>All trials</h2>\n<div class=\"wide\"><table class=\"long\">\n" +
                      htmlRow({"trial", "task", "participant", "condition", "µₛ", "outcome", "squeezes", "lifts",
                               "tries > 5 mm", "time [s]", "slips", "drops", "peak grip [N]", "grip ratio [-]",
                               "offset [mm]", "error [deg]", "regrasps"},
@@ -67,7 +67,7 @@ std::string trialList(const std::vector<TrialRecord>& trials, const ReplayPage& 
   for (const TrialRecord& t : trials) {
     const auto text = [](std::int64_t n) { return std::to_string(n); };
     std::string row = htmlRow(
-        {t.training ? t.task + " (training)" : t.task, text(t.participant + 1), conditionLabel(t.condition),
+        {t.training ? t.task + " (training)" : t.task, text(t.participant + 1), s.labelOf(t.condition),
          number(t.mu_s, 1, 2), t.outcome, text(t.squeezes), text(t.lifts), text(t.tries_5mm), number(t.duration, 1, 2),
          text(t.slips), text(t.drops), number(t.peak_grip, 1, 2), number(t.grip_ratio, 1, 2),
          number(t.offset_at_squeeze, 1e3, 1), number(t.error, 57.29577951308232, 1), text(t.regrasps)},
@@ -93,7 +93,7 @@ std::string reportHtml(const SessionSummary& s, const std::vector<TrialRecord>& 
   html += (s.cells.empty() ? "" : "<h2>Per condition and friction</h2>\n") + cellTable(s) + pairTable(s);
   for (const Picture& picture : pictures) html += htmlFigure(picture, figures_name);
   html += devices;
-  if (!trials.empty()) html += trialList(trials, replay);
+  if (!trials.empty()) html += trialList(s, trials, replay);
   return html + htmlFoot(s.info, facts(s));
 }
 

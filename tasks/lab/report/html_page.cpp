@@ -57,7 +57,7 @@ constexpr const char* kStyle = R"(
 body { margin: 2rem auto; max-width: 64rem; padding: 0 1rem; }
 body { background: var(--paper); color: var(--ink); font: 16px/1.5 "DejaVu Sans", Verdana, sans-serif; }
 h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
-table { border-collapse: collapse; font-size: 0.8rem; font-variant-numeric: tabular-nums; }
+table { border-collapse: separate; border-spacing: 0; font-size: 0.8rem; font-variant-numeric: tabular-nums; }
 td, th { padding: 0.25rem 0.45rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--line); white-space: nowrap; }
 th { white-space: normal; vertical-align: bottom; } td small { color: var(--dim); }
 td:first-child, th:first-child { text-align: left; position: sticky; left: 0; background: var(--paper); }
@@ -68,15 +68,17 @@ tr:target td { background: var(--target); }
 .asked td { text-align: left; white-space: normal; } .asked th { text-align: left; }
 .wide { overflow-x: auto; border-right: 1px dashed var(--line); max-width: 100%; }
 .finding { font-size: 1.1rem; border-left: 0.4rem solid var(--mark); background: var(--tint); padding: 0.6rem 1rem; }
-figure { margin: 1rem 0; } img { width: 100%; height: auto; border-radius: 4px; background: #fff; }
+figure { margin: 1rem 0; } .picture { overflow-x: auto; } img { width: 100%; height: auto; border-radius: 4px; background: #fff; }
 figcaption, .note { font-size: 0.85rem; color: var(--dim); }
 .warning { border-left: 0.4rem solid var(--warn); background: var(--warn-tint); padding: 0.6rem 1rem; }
 pre { background: var(--code); padding: 0.6rem; overflow-x: auto; font-size: 0.8rem; }
 a { color: var(--mark); }
-@media (max-width: 40rem) { body { font-size: 15px; margin: 1rem auto; } h1 { font-size: 1.3rem; } td:first-child { white-space: normal; } }
-@media print { @page { size: A4; margin: 15mm; } body { max-width: none; margin: 0; padding: 0; font-size: 10pt; }
-  figure, tr { break-inside: avoid; } h2 { break-after: avoid; } .wide { overflow: visible; } table { font-size: 6.5pt; }
-  td, th { padding: 0.15rem 0.2rem; white-space: normal; } details { display: none; } }
+@media (max-width: 40rem) { body { font-size: 15px; margin: 1rem auto; } h1 { font-size: 1.3rem; } td:first-child { white-space: normal; }
+  .picture img { width: 46rem; max-width: none; } }
+@media print { @page { size: A4; margin: 15mm; } html { font-size: 11pt; } body { max-width: none; margin: 0; padding: 0; font-size: 10pt; }
+  figure, tr, .finding { break-inside: avoid; } h2 { break-after: avoid; } .wide, .picture { overflow: visible; border: none; }
+  table { font-size: 7.5pt; } td, th { padding: 0.15rem 0.2rem; white-space: normal; } td small { white-space: nowrap; }
+  table.long { font-size: 6pt; } td:first-child, th:first-child { position: static; } details { display: none; } }
 )";
 
 // RFC 4648, section 4.
@@ -156,8 +158,8 @@ std::string htmlFigure(const Picture& p, const std::string& figures_name) {
   if (!p.anchor_trial.empty())
     links += fmt::format("; <a href=\"#trial-{0}\">trial {0} in the list</a>", p.anchor_trial);
   return fmt::format(
-      "<h2>{}</h2>\n<figure id=\"figure-{}\">\n<img alt=\"{}\" width=\"{}\" height=\"{}\" "
-      "src=\"data:image/png;base64,{}\">\n"
+      "<h2>{}</h2>\n<figure id=\"figure-{}\">\n<div class=\"picture\"><img alt=\"{}\" width=\"{}\" height=\"{}\" "
+      "src=\"data:image/png;base64,{}\"></div>\n"
       "<figcaption>{} <span class=\"note\">({})</span></figcaption>\n</figure>\n",
       escaped(p.figure.title), p.figure.name, escaped(p.figure.title), p.figure.width / 2, p.figure.height / 2,
       base64(p.png), escaped(p.figure.caption), links);

@@ -78,6 +78,20 @@ PairedTest comparePairs(const std::vector<double>& a, const std::vector<double>&
   return test;
 }
 
+std::vector<double> holmAdjusted(const std::vector<double>& p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::erase_if(order, [&](std::size_t k) { return p[k] != p[k]; });
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
+  std::vector<double> adjusted(p.size(), std::nan(""));
+  double largest = 0;
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    largest = std::max(largest, std::min(1.0, static_cast<double>(order.size() - rank) * p[order[rank]]));
+    adjusted[order[rank]] = largest;
+  }
+  return adjusted;
+}
+
 std::pair<double, double> wilsonInterval(int k, int n) {
   PINCER_ASSERT(0 <= k && k <= n);
   if (n == 0) return {0, 1};

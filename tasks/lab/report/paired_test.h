@@ -31,6 +31,10 @@ PairedTest comparePairs(const std::vector<double>& a, const std::vector<double>&
 // Two-sided exact p of Wilcoxon's signed ranks; 1 if all are zero. At most 60 differences.
 double wilcoxonSignedRank(const std::vector<double>& differences);
 
+// Adjusted p of each, for having looked at all of them; NaN counts as never looked at (S. Holm, Scand. J. Statist.
+// 6(2), 1979, 65-70).
+std::vector<double> holmAdjusted(const std::vector<double>& p);
+
 std::pair<double, double> wilsonInterval(int k, int n);  // 95 %
 
 }  // namespace pincer::tasks

@@ -62,34 +62,44 @@ const std::vector<FindingMeasure>& findingMeasures() {
   return measures;
 }
 
-PersonMeans personMeans(const std::vector<TrialRecord>& trials) {
-  Sums force, cld;
+std::vector<double> personMeans(const std::vector<TrialRecord>& trials, const std::string& condition) {
+  Sums sums;
   for (const TrialRecord& t : trials) {
-    if (t.training == 0 && t.outcome != "fault") (t.condition == "force" ? force : cld).add(t);
+    if (t.training == 0 && t.outcome != "fault" && t.condition == condition) sums.add(t);
   }
-  return {force.means(), cld.means()};
+  return sums.means();
 }
 
-std::vector<PairedRow> pairedRows(const std::vector<TrialRecord>& trials) {
+std::vector<double> MeasureRow::adjusted() const {
+  std::vector<double> p;
+  for (const PairedTest& test : tests) p.push_back(test.n < 2 ? kNoValue : test.p_wilcoxon);
+  return holmAdjusted(p);
+}
+
+std::vector<MeasureRow> measureRows(const std::vector<TrialRecord>& trials,
+                                    const std::vector<std::string>& conditions) {
   std::map<std::int64_t, std::vector<TrialRecord>> of_person;
   for (const TrialRecord& t : trials) of_person[t.participant].push_back(t);
-  std::vector<PersonMeans> people;
-  for (const auto& [person, own] : of_person) people.push_back(personMeans(own));
-  std::vector<PairedRow> rows;
-  for (std::size_t m = 0; m < findingMeasures().size(); ++m) {
-    std::vector<double> force, cld;
-    for (const PersonMeans& person : people) {
-      force.push_back(person.force[m]);
-      cld.push_back(person.cld[m]);
+  std::vector<MeasureRow> rows(findingMeasures().size());
+  for (std::size_t m = 0; m < rows.size(); ++m) rows[m].measure = m;
+  for (const std::string& condition : conditions) {
+    for (MeasureRow& row : rows) row.of.emplace_back();
+    for (const auto& [person, own] : of_person) {
+      const std::vector<double> means = personMeans(own, condition);
+      for (std::size_t m = 0; m < rows.size(); ++m) rows[m].of.back().push_back(means[m]);
     }
-    const auto known = [](const std::vector<double>& values) {
-      std::vector<double> kept;
-      std::copy_if(values.begin(), values.end(), std::back_inserter(kept), [](double x) { return std::isfinite(x); });
-      return estimateMean(kept);
-    };
-    const PairedRow row{m, known(force), known(cld), comparePairs(force, cld), force, cld};
-    if (row.force.n + row.cld.n > 0) rows.push_back(row);
   }
+  for (MeasureRow& row : rows) {
+    for (const std::vector<double>& values : row.of) {
+      std::vector<double> known;
+      std::copy_if(values.begin(), values.end(), std::back_inserter(known), [](double x) { return std::isfinite(x); });
+      row.means.push_back(estimateMean(known));
+    }
+    for (std::size_t k = 1; k < row.of.size(); ++k) row.tests.push_back(comparePairs(row.of[0], row.of[k]));
+  }
+  std::erase_if(rows, [](const MeasureRow& row) {
+    return std::all_of(row.means.begin(), row.means.end(), [](const Estimate& e) { return e.n == 0; });
+  });
   return rows;
 }
 

@@ -1,11 +1,12 @@
-// person_means: what a participant of the manipulation tasks did in either
-// condition, and whether the conditions differ.
+// person_means: what a participant of the manipulation tasks did in each condition, and whether the conditions differ:
+// each is compared with the first.
 //
 // A time-out is censored: a count or time per success is (sum over all trials) / (successes), the
 // estimate of largest likelihood when every try succeeds with the same chance; with no success at all it
 // is a lower bound. Training and faults don't count.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "pincer/tasks/lab/report/paired_test.h"
@@ -24,20 +25,19 @@ struct FindingMeasure {
 };
 const std::vector<FindingMeasure>& findingMeasures();
 
-// The means of one participant, per condition (force, cld+force), one per measure.
-struct PersonMeans {
-  std::vector<double> force, cld;
-};
-PersonMeans personMeans(const std::vector<TrialRecord>& trials);
+// The means of one participant's `trials` in the condition, one per measure; NaN: none.
+std::vector<double> personMeans(const std::vector<TrialRecord>& trials, const std::string& condition);
 
-// Both conditions of a measure over the participants.
-struct PairedRow {
-  std::size_t measure = 0;  // place in findingMeasures()
-  Estimate force, cld;
-  PairedTest test;
-  std::vector<double> force_of, cld_of;  // each participant's, in the order of their numbers; NaN: none
+// A measure in every condition, over the participants.
+struct MeasureRow {
+  std::size_t measure = 0;              // place in findingMeasures()
+  std::vector<Estimate> means;          // per condition
+  std::vector<std::vector<double>> of;  // likewise, of each participant in the order of their numbers; NaN: none
+  std::vector<PairedTest> tests;        // of the second condition against the first, of the third against it ...
+  // Holm's adjusted p of `tests` (Wilcoxon), for having looked at all of them; NaN where one can't be told.
+  std::vector<double> adjusted() const;
 };
-// Of the measures that somebody has.
-std::vector<PairedRow> pairedRows(const std::vector<TrialRecord>& trials);
+// Of the measures that somebody has, in conditions of these names.
+std::vector<MeasureRow> measureRows(const std::vector<TrialRecord>& trials, const std::vector<std::string>& conditions);
 
 }  // namespace pincer::tasks

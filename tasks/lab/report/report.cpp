@@ -25,14 +25,15 @@ std::vector<Picture> wantedPictures(const SessionReader& session, const SessionS
     pictures.push_back({measureFigure(summary, pickups, kTime), "", ""});
   }
   for (const std::string& condition : summary.conditions) {
+    const std::string& label = summary.labelOf(condition);
     const auto alignment = representativeTrial(alignments, condition);  // none squeezes: the first
     if (alignment) {
-      const TrialTrace trace = traceOf(session, *alignment);
+      const TrialTrace trace = traceOf(session, *alignment, label);
       if (!trace.samples.empty()) pictures.push_back({turnFigure(trace), "", std::to_string(alignment->trial + 1)});
     }
     const auto trial = representativeTrial(pickups, condition);
     if (!trial) continue;
-    const TrialTrace trace = traceOf(session, *trial);
+    const TrialTrace trace = traceOf(session, *trial, label);
     if (trace.samples.empty()) continue;  // recorded without samples
     pictures.push_back({trialFigure(trace), "", std::to_string(trial->trial + 1)});
     if (isShownByTactors(trace)) pictures.push_back({tactorFigure(trace), "", std::to_string(trial->trial + 1)});

@@ -110,7 +110,8 @@ Estimate overPeople(const People& people, double (*of)(const ResponseRecord&)) {
   return estimateMean(values);
 }
 
-double thresholdOf(const std::string& task, const std::vector<const ResponseRecord*>& trials, int averaged) {
+// Of one staircase.
+double thresholdOfRun(const std::string& task, const std::vector<const ResponseRecord*>& trials, int averaged) {
   std::vector<double> reversals;
   for (const ResponseRecord* r : trials)
     if (r->reversal) reversals.push_back(task == kCountedInSegments ? segmentsOf(r->level) : r->level);
@@ -118,6 +119,21 @@ double thresholdOf(const std::string& task, const std::vector<const ResponseReco
   double sum = 0;
   for (auto level = reversals.end() - averaged; level != reversals.end(); ++level) sum += *level;
   return sum / averaged;
+}
+
+// The mean over a participant's staircases in the condition, one per block; those that found none don't count.
+double thresholdOf(const std::string& task, const std::vector<const ResponseRecord*>& trials, int averaged) {
+  std::map<std::int64_t, std::vector<const ResponseRecord*>> runs;
+  for (const ResponseRecord* r : trials) runs[r->run].push_back(r);
+  double sum = 0;
+  int n = 0;
+  for (const auto& [run, own] : runs) {
+    const double threshold = thresholdOfRun(task, own, averaged);
+    if (std::isnan(threshold)) continue;
+    sum += threshold;
+    ++n;
+  }
+  return n > 0 ? sum / n : kNoFigure;
 }
 
 double headlineOf(const std::string& task, const StudyCondition& condition,

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "pincer/contact/io/printable.h"
+#include "pincer/tasks/lab/study/survey.h"
+#include "pincer/tasks/run/files/strict_json.h"
 
 namespace pincer::tasks {
 
@@ -58,8 +60,44 @@ void addCells(SessionSummary& s, const std::string& condition, const std::vector
   s.cells.push_back(cellOf(condition, kAllFrictions, trials));
 }
 
-void sortConditions(std::vector<std::string>& conditions) {
-  std::stable_partition(conditions.begin(), conditions.end(), [](const std::string& c) { return c == "force"; });
+// The published conditions are labelled so where the session's study can't say it.
+std::string publishedLabel(const std::string& condition) {
+  if (condition == "force") return "force only";
+  return condition == "cld+force" ? "CLD + force" : condition;
+}
+
+// Name and label of the study's conditions; none where the session's protocol can't be read. Older sessions have the
+// names alone.
+std::vector<NamedCondition> studyConditions(const SessionInfo& info) {
+  std::vector<NamedCondition> conditions;
+  try {
+    const JsonValue study = parseJson(info.protocol_json, "protocol");
+    const JsonValue* list = study.find("conditions");
+    if (!list) return {};
+    for (const JsonValue& c : list->array()) {
+      const bool only_named = c.kind() == JsonValue::Kind::kString;
+      const std::string name = only_named ? c.text() : c.at("name").text();
+      conditions.push_back({name, only_named ? publishedLabel(name) : c.at("label").text()});
+    }
+  } catch (const InputError&) {
+    conditions.clear();
+  }
+  return conditions;
+}
+
+// Those that trials were done in.
+void addConditions(SessionSummary& s, std::set<std::string> done) {
+  for (const NamedCondition& c : studyConditions(s.info)) {
+    if (done.erase(c.name) == 0) continue;
+    s.conditions.push_back(c.name);
+    s.labels.push_back(c.label.empty() ? c.name : c.label);
+  }
+  std::vector<std::string> others(done.begin(), done.end());
+  std::stable_partition(others.begin(), others.end(), [](const std::string& c) { return c == "force"; });
+  for (const std::string& c : others) {
+    s.conditions.push_back(c);
+    s.labels.push_back(publishedLabel(c));
+  }
 }
 
 std::string show(const Estimate& e, Averaged averaged, bool lower_bound = false) {
@@ -100,15 +138,25 @@ std::string alignedRows(std::vector<std::vector<std::string>> rows) {
 
 }  // namespace
 
-std::string conditionLabel(const std::string& condition) {
-  if (condition == "force") return "force only";
-  if (condition == "cld+force") return "CLD + force";
-  return condition;
+const std::string& SessionSummary::labelOf(const std::string& condition) const {
+  const auto found = std::find(conditions.begin(), conditions.end(), condition);
+  const auto place = static_cast<std::size_t>(found - conditions.begin());
+  return place < labels.size() ? labels[place] : condition;
 }
 
 SessionSummary summariseSession(const SessionReader& session) {
-  SessionSummary s{
-      session.path(), session.info(), session.state(), session.startedUtc(), session.warning(), 0, 0, {}, {}, {}, {}};
+  SessionSummary s{session.path(),
+                   session.info(),
+                   session.state(),
+                   session.startedUtc(),
+                   session.warning(),
+                   0,
+                   0,
+                   {},
+                   {},
+                   {},
+                   {},
+                   {}};
   const std::vector<TrialRecord> all = session.trials();
   const auto trials = select(all, [](const TrialRecord& t) { return t.task == "sphere-pickup" && t.training == 0; });
   std::set<std::int64_t> participants;
@@ -121,34 +169,46 @@ SessionSummary summariseSession(const SessionReader& session) {
   for (const TrialRecord& t : trials) frictions.insert(t.mu_s);
   s.participants = static_cast<std::int64_t>(participants.size());
   s.trials = static_cast<std::int64_t>(all.size());
-  s.conditions.assign(conditions.begin(), conditions.end());
   s.frictions.assign(frictions.begin(), frictions.end());
-  sortConditions(s.conditions);
+  addConditions(s, conditions);
   for (const std::string& c : s.conditions) {
     const auto of_condition = select(trials, [&](const TrialRecord& t) { return t.condition == c; });
     if (!of_condition.empty()) addCells(s, c, of_condition);
   }
-  s.pairs = pairedRows(all);
+  s.rows = measureRows(all, s.conditions);
   return s;
 }
 
-std::vector<std::string> pairHeads() {
-  return {"over the participants", "force only", "CLD + force", "difference", "d_z", "p (t)", "p (Wilcoxon)"};
+std::vector<std::string> pairHeads(const SessionSummary& s) {
+  const bool two = s.conditions.size() == 2;
+  std::vector<std::string> heads{
+      "over the participants", s.labels[0], two ? s.labels[1] : "compared with it", "difference", "d_z", "p (t)",
+      "p (Wilcoxon)"};
+  if (!two) heads.emplace_back("p (Holm)");
+  return heads;
 }
 
-std::vector<std::string> pairTexts(const PairedRow& row) {
-  const FindingMeasure& m = findingMeasures()[row.measure];
-  const auto p_text = [&](double p) {
-    return row.test.n < 2 || p != p ? std::string("–") : p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p);
+std::vector<std::vector<std::string>> pairTexts(const SessionSummary& s) {
+  const auto p_text = [](double p) {
+    return p != p ? std::string("–") : p < 1e-4 ? "< 0.0001" : fmt::format("{:.4f}", p);
   };
-  const bool known = row.test.n > 1 && row.test.effect == row.test.effect;
-  return {fmt::format("{}{}", m.label, *m.unit ? fmt::format(" [{}]", m.unit) : ""),
-          show(row.force, m.averaged),
-          show(row.cld, m.averaged),
-          show(row.test.difference, Averaged::kAny),
-          known ? fmt::format("{:.2f}", row.test.effect) : "–",
-          p_text(row.test.p_t),
-          p_text(row.test.p_wilcoxon)};
+  std::vector<std::vector<std::string>> texts;
+  for (const MeasureRow& row : s.rows) {
+    const FindingMeasure& m = findingMeasures()[row.measure];
+    const std::vector<double> adjusted = row.adjusted();
+    for (std::size_t k = 0; k < row.tests.size(); ++k) {
+      const PairedTest& test = row.tests[k];
+      const bool several = row.tests.size() > 1, tested = test.n > 1;
+      const std::string mean = show(row.means[k + 1], m.averaged);
+      texts.push_back({fmt::format("{}{}", m.label, *m.unit ? fmt::format(" [{}]", m.unit) : ""),
+                       show(row.means[0], m.averaged), several ? fmt::format("{}: {}", s.labels[k + 1], mean) : mean,
+                       show(test.difference, Averaged::kAny),
+                       tested && test.effect == test.effect ? fmt::format("{:.2f}", test.effect) : "–",
+                       tested ? p_text(test.p_t) : "–", tested ? p_text(test.p_wilcoxon) : "–"});
+      if (several) texts.back().push_back(p_text(adjusted[k]));
+    }
+  }
+  return texts;
 }
 
 std::vector<std::string> tableHeads() {
@@ -158,8 +218,8 @@ std::vector<std::string> tableHeads() {
   return heads;
 }
 
-std::vector<std::string> tableRow(const CellSummary& cell) {
-  std::vector<std::string> row{conditionLabel(cell.condition),
+std::vector<std::string> tableRow(const SessionSummary& summary, const CellSummary& cell) {
+  std::vector<std::string> row{summary.labelOf(cell.condition),
                                cell.allFrictions() ? "all" : fmt::format("{:.2f}", cell.mu_s),
                                fmt::format("{}", cell.trials)};
   row.push_back(fmt::format("{:.0f} %", 100 * cell.successRate()));
@@ -186,12 +246,12 @@ std::string formatTable(const SessionSummary& summary) {
   std::string text;
   if (!summary.cells.empty()) {
     std::vector<std::vector<std::string>> rows{tableHeads()};
-    for (const CellSummary& cell : summary.cells) rows.push_back(tableRow(cell));
+    for (const CellSummary& cell : summary.cells) rows.push_back(tableRow(summary, cell));
     text += alignedRows(rows) + tableNote(summary) + "\n";
   }
-  if (!summary.pairs.empty()) {
-    std::vector<std::vector<std::string>> rows{pairHeads()};
-    for (const PairedRow& row : summary.pairs) rows.push_back(pairTexts(row));
+  if (summary.conditions.size() > 1 && !summary.rows.empty()) {
+    std::vector<std::vector<std::string>> rows{pairHeads(summary)};
+    for (std::vector<std::string>& row : pairTexts(summary)) rows.push_back(std::move(row));
     text += "\n" + alignedRows(rows);
   }
   if (!summary.warning.empty()) text += summary.warning + "\n";

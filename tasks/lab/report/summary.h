@@ -45,25 +45,27 @@ struct SessionSummary {
   SessionInfo info;
   std::string state, started_utc, warning;  // warning: empty if the session is complete
   std::int64_t participants = 0, trials = 0;
-  std::vector<std::string> conditions;  // "force" first, then by name
+  std::vector<std::string> conditions;  // in the study's order; without a study "force" first, then by name
+  std::vector<std::string> labels;      // of the conditions, for people
   std::vector<double> frictions;        // mu_s, rising
   std::vector<CellSummary> cells;       // of sphere pickup, per condition: each friction, then all
-  std::vector<PairedRow> pairs;         // of both tasks, over the participants
+  std::vector<MeasureRow> rows;         // of both tasks, over the participants
+
+  // A condition that the session doesn't have keeps its name.
+  const std::string& labelOf(const std::string& condition) const;
 };
 
 SessionSummary summariseSession(const SessionReader& session);
 
-// "force" -> "force only", "cld+force" -> "CLD + force"; another condition keeps its name.
-std::string conditionLabel(const std::string& condition);
-
 // One text per column of a cell's row, and the columns' heads; shared by the text table and the HTML one.
 std::vector<std::string> tableHeads();
-std::vector<std::string> tableRow(const CellSummary& cell);
+std::vector<std::string> tableRow(const SessionSummary& summary, const CellSummary& cell);
 std::string tableNote(const SessionSummary& summary);  // how to read the intervals and marks, one or two sentences
 
-// The comparison of the conditions: heads, and one text per column of a row.
-std::vector<std::string> pairHeads();
-std::vector<std::string> pairTexts(const PairedRow& row);
+// The comparison of the conditions with the first: heads, and one text per column of a row; a row per measure and
+// condition that is compared. Nothing with fewer than two conditions.
+std::vector<std::string> pairHeads(const SessionSummary& summary);
+std::vector<std::vector<std::string>> pairTexts(const SessionSummary& summary);
 
 // For a terminal: aligned columns, UTF-8, no colour.
 std::string formatTable(const SessionSummary& summary);

@@ -46,18 +46,25 @@ std::string summaryJson(const SessionSummary& s) {
             {"cells", Json::array()}};
   for (const CellSummary& cell : s.cells) json["cells"].push_back(asJson(cell));
   json["pairs"] = Json::array();
-  for (const PairedRow& row : s.pairs) {
+  for (const MeasureRow& row : s.rows) {
     const FindingMeasure& m = findingMeasures()[row.measure];
-    json["pairs"].push_back({{"measure", m.key},
-                             {"unit", m.unit},
-                             {"force", row.force.mean},
-                             {"cld", row.cld.mean},
-                             {"n", row.test.n},
-                             {"difference", row.test.difference.mean},
-                             {"ci95_half_width", row.test.difference.half_width},
-                             {"d_z", row.test.effect},
-                             {"p_t", row.test.p_t},
-                             {"p_wilcoxon", row.test.p_wilcoxon}});
+    const std::vector<double> adjusted = row.adjusted();
+    for (std::size_t k = 0; k < row.tests.size(); ++k) {
+      const PairedTest& test = row.tests[k];
+      json["pairs"].push_back({{"measure", m.key},
+                               {"unit", m.unit},
+                               {"reference", s.conditions[0]},
+                               {"condition", s.conditions[k + 1]},
+                               {"reference_mean", row.means[0].mean},
+                               {"mean", row.means[k + 1].mean},
+                               {"n", test.n},
+                               {"difference", test.difference.mean},
+                               {"ci95_half_width", test.difference.half_width},
+                               {"d_z", test.effect},
+                               {"p_t", test.p_t},
+                               {"p_wilcoxon", test.p_wilcoxon},
+                               {"p_holm", adjusted[k]}});
+    }
   }
   // a name may hold what a terminal obeys, and bytes that are no UTF-8
   return json.dump(2, ' ', true, Json::error_handler_t::replace);

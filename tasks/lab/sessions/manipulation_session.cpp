@@ -8,6 +8,7 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/tasks/lab/experiments/manipulation_file.h"
+#include "pincer/tasks/lab/experiments/study.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/lab/findings/claims.h"
 #include "pincer/tasks/lab/sessions/study_experiments.h"
@@ -71,9 +72,7 @@ bool askSurvey(const ManipulationSessionOptions& options, SessionWriter& writer,
   if (!options.host.ask || !options.host.person) return true;
   std::vector<std::string> tasks;
   for (const HandTask task : options.study.tasks) tasks.emplace_back(kHandTaskNames[static_cast<std::size_t>(task)]);
-  std::vector<NamedCondition> conditions;
-  for (const PickupCondition c : options.study.conditions)
-    conditions.push_back({nameOf(c), c == PickupCondition::kForce ? "force only" : "display and force"});
+  const std::vector<NamedCondition> conditions = namedOf(options.study.conditions);
   const SurveyPlan& plan = options.study.session;
   const SurveyForm form{questionsOf(moment == "before" ? plan.demographics : plan.survey, tasks, conditions), moment,
                         *options.host.person};

@@ -163,7 +163,7 @@ class Replayer {
         run_(run),
         study_(parseStudyFile(session.info().protocol_json, session.path() + ": protocol")),
         plan_(manipulationTrials(study_)),
-        object_(makePickupObject(study_.pickup)) {}
+        objects_(makePickupObjects(study_)) {}
 
   // False: interrupted.
   bool replay(StoredTrial& stored, ReplayResult& result) {
@@ -179,7 +179,7 @@ class Replayer {
   bool replaySimulated(const ManipulationTrial& spec, const StoredTrial& stored, ReplayResult& result) {
     ComparingSink sink(session_, stored, result);
     const std::unique_ptr<Participant> participant = makeParticipant(study_, spec);
-    SimulatedTrial cycle(makeTrial(study_, object_, spec, sink), *participant);
+    SimulatedTrial cycle(makeTrial(study_, objects_, spec, sink), *participant);
     if (!serve(cycle.cycle(), stored.row)) return false;
     cycle.finish();
     return true;
@@ -194,7 +194,7 @@ class Replayer {
       if (stored.inputs.empty()) return true;
     }
     ComparingSink sink(session_, stored, result);
-    const std::unique_ptr<HandTrial> trial = makeTrial(study_, object_, spec, sink);
+    const std::unique_ptr<HandTrial> trial = makeTrial(study_, objects_, spec, sink);
     RecordedHands hands(*trial, *stored.hands, stored.inputs);
     HandsCycle cycle(*trial, hands);
     if (!serve(cycle, stored.row)) return false;
@@ -210,7 +210,7 @@ class Replayer {
   const ReplayRun& run_;
   const ManipulationStudy study_;
   const std::vector<ManipulationTrial> plan_;
-  const PickupObject object_;
+  const PickupObjects objects_;
 };
 
 }  // namespace

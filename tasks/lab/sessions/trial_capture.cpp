@@ -41,7 +41,7 @@ void tell(const HandTrial& trial, Cue cue, TrialSnapshot& told) {
 
 TrialCapture::TrialCapture(HandsCycle& cycle, std::size_t trial, std::size_t trials, bool blind, bool guided)
     : cycle_(cycle), guided_(guided && !blind) {
-  told_.condition = cycle.trial().scene().model.mounts[0].display_tactile ? "cld+force" : "force";
+  told_.condition = cycle.trial().condition().c_str();
   told_.trial = static_cast<std::int64_t>(trial) + 1;
   told_.trials = static_cast<std::int64_t>(trials);
   told_.blind = blind;

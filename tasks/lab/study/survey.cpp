@@ -127,18 +127,6 @@ void validate(const SurveyPlan& plan, std::string_view of) {
   check(plan.survey, "survey");
 }
 
-void requireOneBlock(const SurveyPlan& plan, std::string_view of, bool orders_conditions) {
-  if (plan.blocks != 1)
-    throw ParameterError("session.blocks",
-                         fmt::format("{}: session.blocks = {}, but this study repeats trials by its own numbers. Give "
-                                     "`repetitions` or `runs`, and leave blocks out.",
-                                     of, plan.blocks));
-  if (!orders_conditions && plan.order != ConditionOrder::kBalanced)
-    throw ParameterError(
-        "session.order",
-        fmt::format("{}: session.order: this study mixes its conditions trial by trial. Leave it out.", of));
-}
-
 std::vector<SurveyQuestion> questionsOf(const std::vector<SurveyItem>& items, const std::vector<std::string>& tasks,
                                         const std::vector<NamedCondition>& conditions) {
   std::vector<SurveyQuestion> questions;

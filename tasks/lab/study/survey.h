@@ -50,10 +50,6 @@ SurveyPlan oneFingerSurvey();
 // Throws ParameterError: two items of one name, a choice of fewer than two, low not below high.
 void validate(const SurveyPlan& plan, std::string_view of);
 
-// Of a study whose trials the file doesn't repeat by blocks, and, without conditions to
-// order, neither orders. Throws ParameterError.
-void requireOneBlock(const SurveyPlan& plan, std::string_view of, bool orders_conditions);
-
 // An item that is to be asked, of one condition or task if it is asked for each.
 struct SurveyQuestion {
   SurveyItem item;

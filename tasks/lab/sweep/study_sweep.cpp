@@ -27,6 +27,12 @@ ManipulationStudy studyAt(const std::string& task, const StudySweep& sweep, cons
   return studyOfJson(json);
 }
 
+std::vector<std::string> namesOf(const ManipulationStudy& study) {
+  std::vector<std::string> names;
+  for (const HandCondition& condition : study.conditions) names.push_back(condition.name);
+  return names;
+}
+
 bool isMeasured(const std::string& task, const FindingMeasure& measure) {
   return task == "manipulation" || measure.of_pickup == (task == "sphere-pickup");
 }
@@ -36,13 +42,12 @@ std::vector<double> meansOf(const std::string& task, const ManipulationStudy& st
   RowSink sink;
   runManipulationStudy(study, {}, sink, interrupted);
   std::vector<double> means;
-  const std::vector<PairedRow> rows = pairedRows(sink.rows);
+  const std::vector<MeasureRow> rows = measureRows(sink.rows, namesOf(study));
   for (std::size_t m = 0; m < findingMeasures().size(); ++m) {
     if (!isMeasured(task, findingMeasures()[m])) continue;
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const PairedRow& r) { return r.measure == m; });
-    for (const Estimate PairedRow::*condition : {&PairedRow::force, &PairedRow::cld}) {
-      means.push_back(row == rows.end() ? std::numeric_limits<double>::quiet_NaN() : ((*row).*condition).mean);
-    }
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const MeasureRow& r) { return r.measure == m; });
+    for (std::size_t c = 0; c < study.conditions.size(); ++c)
+      means.push_back(row == rows.end() ? std::numeric_limits<double>::quiet_NaN() : row->means[c].mean);
   }
   return means;
 }
@@ -58,9 +63,9 @@ SweepJob studySweep(const std::string& task, const StudySweep& sweep) {
   job.table = tableOf(fmt::format("{}, {}", task, counted(sweep.participants, "participant")), sweep.grid);
   for (const FindingMeasure& measure : findingMeasures()) {
     if (!isMeasured(task, measure)) continue;
-    for (const char* condition : {"force only", "CLD + force"}) {
+    for (const HandCondition& condition : ManipulationStudy{}.conditions) {
       const std::string label =
-          fmt::format("{}, {} [{}]", measure.label, condition, *measure.unit ? measure.unit : "-");
+          fmt::format("{}, {} [{}]", measure.label, condition.label, *measure.unit ? measure.unit : "-");
       addMeasure(job.table, label, measure.expected != PublishedEffect::kNone);
     }
   }

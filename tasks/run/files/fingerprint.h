@@ -22,6 +22,7 @@ class Fingerprint {
     step(number);
     hash_ ^= hash_ >> 32;
   }
+  std::uint64_t bits() const { return hash_; }
   std::string text() const { return fmt::format("{:016x}", hash_); }  // 16 hexadecimal digits
 
  private:

@@ -17,11 +17,11 @@ constexpr devices::SurfaceSize kSize{640, 360};
 struct RecordedTask {
   explicit RecordedTask(HandTask task) {
     const ManipulationStudy study;
-    const PickupObject object = makePickupObject(study.pickup);
+    const PickupObjects objects = makePickupObjects(study);
     for (const ManipulationTrial& spec : manipulationTrials(study)) {
       if (spec.task != task) continue;
       participant = makeParticipant(study, spec);
-      trial.emplace(makeTrial(study, object, spec, sink), *participant);
+      trial.emplace(makeTrial(study, objects, spec, sink), *participant);
       recording = recordTrial(trial->cycle(), 2, 40, never);
       return;
     }

@@ -95,6 +95,20 @@ TEST(CommandLine, KnowsWhichCommandWasMeant) {
   EXPECT_EQ(linesOf(top.error), 1);
 }
 
+// An option that isn't there was "not expected", whatever it was close to.
+TEST(CommandLine, KnowsWhichOptionWasMeant) {
+  const AppResult typed = runPincer({"run", "delay-discrimination", "--partcipants", "2"}),
+                  with_value = runPincer({"sim", "s4_pinch", "--duraton=2"}), far = runPincer({"sim", "--xyzzyplugh"});
+  EXPECT_EQ(typed.exit_code, kExitUsage);
+  EXPECT_TRUE(contains(typed.error,
+                       "\"--partcipants\" isn't an option of pincer run delay-discrimination. Did you mean "
+                       "\"--participants\"? See `pincer run delay-discrimination --help`."))
+      << typed.error;
+  EXPECT_TRUE(contains(with_value.error, "Did you mean \"--duration\"?")) << with_value.error;
+  EXPECT_TRUE(contains(far.error, "isn't an option of pincer sim. See")) << far.error;
+  EXPECT_EQ(linesOf(typed.error), 1);
+}
+
 TEST(CommandLine, NamesFlagsWithoutTheirValues) {
   const std::string help = runPincer({"sim", "--help"}).out;
   EXPECT_TRUE(contains(help, "--no-keys "));

@@ -125,7 +125,7 @@ ManipulationStudy alignments(const SensingLimits& limits, bool pivot = true) {
   study.training.alignments = 0;
   study.alignment.repetitions = 2;
   study.alignment.pivot = pivot;
-  study.conditions = {PickupCondition::kCldForce};
+  study.conditions = {publishedHandConditions()[1]};
   study.people.limits = limits;
   return study;
 }

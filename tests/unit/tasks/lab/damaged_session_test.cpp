@@ -111,7 +111,7 @@ class Damage {
     options.study.participants = 1;
     options.study.tasks = {HandTask::kPickup};
     options.study.training.pickups = 0;
-    options.study.conditions = {PickupCondition::kCldForce};
+    options.study.conditions = {publishedHandConditions()[1]};
     options.study.pickup.frictions = {0.9};
     options.study.pickup.repetitions = 2;
     options.study.pickup.timeout = 1;

@@ -29,7 +29,9 @@ SessionSummary pickups(const std::vector<std::pair<int, int>>& squeezes) {
   SessionSummary s;
   s.info.devices_json = R"({"arms": "simulated"})";
   s.participants = static_cast<std::int64_t>(squeezes.size());
-  s.pairs = pairedRows(trials);
+  s.conditions = {"force", "cld+force"};
+  s.labels = {"force only", "CLD + force"};
+  s.rows = measureRows(trials, s.conditions);
   return s;
 }
 

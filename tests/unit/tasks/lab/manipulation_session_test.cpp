@@ -32,7 +32,7 @@ TEST(ManipulationFile, ReadsWhatItWrites) {
   study.people.limits.tactor_sd = 1.25e-3;
   study.alignment.pivot = false;
   study.pickup.frictions = {0.4, 0.8};
-  study.conditions = {PickupCondition::kCldForce};
+  study.conditions = {publishedHandConditions()[1]};
   const std::string text = studyFile(study);
   EXPECT_EQ(studyFile(parseStudyFile(text, "study.json")), text);
   EXPECT_EQ(hashOf(parseStudyFile(text, "study.json").people), hashOf(study.people));

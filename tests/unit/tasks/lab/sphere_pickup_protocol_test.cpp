@@ -14,9 +14,9 @@ namespace {
 TEST(SpherePickupTrials, HoldEveryFrictionEquallyOftenInEachCondition) {
   SpherePickupOptions options;
   options.participants = 3;
-  std::map<std::tuple<std::int64_t, PickupCondition, double>, int> counts;
+  std::map<std::tuple<std::int64_t, std::string, double>, int> counts;
   for (const auto& trial : pickupTrials(options)) {
-    ++counts[{trial.participant, trial.condition, trial.mu_s}];
+    ++counts[{trial.participant, trial.condition.name, trial.mu_s}];
     EXPECT_EQ(trial.mu_d, 0.85 * trial.mu_s);
   }
   EXPECT_EQ(counts.size(), 3u * 2 * 4);
@@ -42,7 +42,7 @@ TEST(SpherePickupTrials, DoOneConditionThenTheOtherAndBalanceWhichIsFirst) {
   const auto trials = pickupTrials(options);
   for (const auto& trial : trials) {
     const bool first_half = trial.index < 20, even = trial.participant % 2 == 0;
-    EXPECT_EQ(trial.condition == PickupCondition::kForce, first_half == even);
+    EXPECT_EQ(trial.condition.name == "force", first_half == even);
   }
 }
 
@@ -102,7 +102,7 @@ TEST(SpherePickupOptions, OutOfRangeAreRefusedByName) {
       {"conditions is empty", [](auto& o) { o.conditions.clear(); }},
       {"given twice",
        [](auto& o) {
-         o.conditions = {PickupCondition::kForce, PickupCondition::kForce};
+         o.conditions = {HandCondition{}, HandCondition{}};
        }},
   };
   for (const auto& [named, set] : bad) {
@@ -117,11 +117,27 @@ TEST(SpherePickupOptions, OutOfRangeAreRefusedByName) {
   }
 }
 
-TEST(SpherePickupOptions, ConditionsHaveNames) {
-  for (const auto condition : {PickupCondition::kForce, PickupCondition::kCldForce}) {
-    EXPECT_EQ(pickupConditionOf(nameOf(condition)), condition);
-  }
-  EXPECT_THROW(pickupConditionOf("cld"), InputError);
+// Whoever adds a condition to a study, or leaves one out, finds the same trials in the others.
+TEST(SpherePickupTrials, AreSeededByTheNameOfTheirCondition) {
+  SpherePickupOptions two, three;
+  three.conditions.push_back({"heavy", "heavy", true, HandShading::kTask, 2});
+  std::map<std::string, std::vector<double>> orders_of_two, orders_of_three;
+  for (const auto& trial : pickupTrials(two)) orders_of_two[trial.condition.name].push_back(trial.mu_s);
+  for (const auto& trial : pickupTrials(three)) orders_of_three[trial.condition.name].push_back(trial.mu_s);
+  EXPECT_EQ(orders_of_three.size(), 3u);
+  for (const auto& [name, order] : orders_of_two) EXPECT_EQ(orders_of_three[name], order) << name;
+  EXPECT_NE(orders_of_three["heavy"], orders_of_three["cld+force"]);
+}
+
+TEST(SpherePickupOptions, AreThoseOfTheConditionWhileItLasts) {
+  const SpherePickupOptions heavy = inCondition(SpherePickupOptions{}, {"a", "", true, HandShading::kFacet, 2});
+  EXPECT_DOUBLE_EQ(heavy.mass, 0.150);
+  EXPECT_EQ(heavy.shading, contact::SurfaceVariant::facet);
+  EXPECT_FALSE(inCondition(SpherePickupOptions{}, {"a", "", true, HandShading::kExactly, 1}).shading);
+  SpherePickupOptions mesh;
+  mesh.object = ObjectFile{"mug.obj"};
+  EXPECT_EQ(inCondition(mesh, {"a", "", true, HandShading::kForce, 1}).object->shading, contact::SurfaceVariant::force);
+  EXPECT_THROW(inCondition(mesh, {"a", "", true, HandShading::kExactly, 1}), InputError);
 }
 
 }  // namespace

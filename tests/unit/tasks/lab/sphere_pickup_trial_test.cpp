@@ -24,7 +24,7 @@ SensingLimits exactSenses() {
   return limits;
 }
 
-PickupTrialSpec specWith(double mu, PickupCondition condition = PickupCondition::kCldForce) {
+PickupTrialSpec specWith(double mu, const HandCondition& condition = publishedHandConditions()[1]) {
   return {0, 0, 0, condition, mu, 0.85 * mu, 4};
 }
 
@@ -100,7 +100,7 @@ TEST(SpherePickupTrial, RepeatsItselfToTheBit) {
 }
 
 TEST(SpherePickupTrial, ParksTheTactorsInTheForceOnlyCondition) {
-  PickupRun parked(specWith(0.9, PickupCondition::kForce)), shown(specWith(0.9));
+  PickupRun parked(specWith(0.9, publishedHandConditions()[0])), shown(specWith(0.9));
   parked.run();
   shown.run();
   double moved = 0;

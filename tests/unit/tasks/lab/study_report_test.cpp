@@ -44,6 +44,30 @@ void writeDelaySession(const std::string& path, bool at_chance) {
   writer.close();
 }
 
+// A study with two blocks showed the second block's threshold alone.
+TEST(StudySummary, AThresholdIsTheMeanOfThoseOfAllBlocks) {
+  ArcStudy study = delayStudy();
+  study.conditions[0].staircase.averaged = 2;
+  SessionInfo info;
+  info.task = study.task;
+  info.protocol_json = studyJson(study);
+  std::vector<ResponseRecord> responses;
+  for (std::int64_t k = 0; k < 8; ++k) {
+    ResponseRecord r;
+    r.run = k / 4;
+    r.index = k % 4;
+    r.condition = "whole";
+    r.level = r.run == 0 ? 0.060 : 0.100;
+    r.correct = 1;
+    r.reversal = r.index >= 2;
+    r.outcome = "answered";
+    responses.push_back(r);
+  }
+  const StudySummary summary = summariseStudy(info, "two blocks", responses);
+  ASSERT_EQ(summary.conditions.front().people.size(), 1u);
+  EXPECT_DOUBLE_EQ(summary.conditions.front().people.front().headline, 0.080);
+}
+
 // Of a session that was interrupted at once, or whose trials all ended in a fault.
 TEST(StudyReport, WithoutAnAnswerSaysWhatIsNotDrawn) {
   const TemporaryDirectory dir;
