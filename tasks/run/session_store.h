@@ -60,6 +60,9 @@ class SessionWriter {
   void addSurvey(const SurveyRecord& answer);           // likewise
   void close();                               // final flush, state "complete", one plain file without a log beside it
   void abort(std::string_view why) noexcept;  // final flush, state "aborted: <why>"; needs no memory
+  // After close(): over the values of all samples in their order (session/record_hash.h); nothing of a session that was
+  // gone on with.
+  std::optional<std::uint64_t> samplesHash() const;
 
  private:
   class Impl;

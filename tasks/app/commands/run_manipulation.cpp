@@ -144,7 +144,7 @@ int showStudy(const ManipulationArguments& arguments, const std::string& directo
       servo.clock != ServoClock::kVirtual || arguments.view.view || arguments.devices.devices != "sim";
   if (by_the_clock) say(servoText(result.servo, 1 / servo.rate));
   say(fmt::format("Session: {}", printablePath(session.path())));
-  say(fmt::format("state_hash {}", sessionHash(session)));
+  say(fmt::format("state_hash {}", sessionHash(session, result.samples_hash)));
   if (!by_the_clock) say(throughputText(static_cast<double>(result.servo.ticks) / servo.rate));
   if (result.interrupted) {
     say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same command with --resume --out {}",

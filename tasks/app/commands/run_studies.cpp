@@ -102,7 +102,7 @@ int showStudy(const StudyArguments& arguments, const std::string& directory, con
   if (by_the_clock) say(servoText(outcome.servo, 1 / arguments.run.servo.rate));
   if (!by_the_clock) say(throughputText(static_cast<double>(outcome.servo.ticks) / arguments.run.servo.rate));
   say(fmt::format("Session: {}", printablePath(session.path())));
-  say(fmt::format("state_hash {}", sessionHash(session)));
+  say(fmt::format("state_hash {}", sessionHash(session, outcome.samples_hash)));
   if (outcome.interrupted) {
     say(fmt::format("Interrupted after {}; what is done is safe. Go on: the same task with --resume --out {}",
                     counted(outcome.trials, "trial"), printablePath(directory)));

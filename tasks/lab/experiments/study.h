@@ -103,6 +103,7 @@ struct StudyOutcome {
   std::int64_t trials = 0;  // finished, earlier ones included
   bool interrupted = false;
   ServoReport servo;
+  std::optional<std::uint64_t> samples_hash{};  // SessionWriter::samplesHash(), of a session in a file
 };
 
 // Runs the study from the first trial that isn't among `earlier`, which are an earlier session's, in

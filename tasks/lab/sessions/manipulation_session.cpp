@@ -107,6 +107,7 @@ ManipulationSessionResult runInto(SessionWriter& writer, const std::string& path
   }
   result.interrupted = result.servo.interrupted || refused;
   result.interrupted ? writer.abort("interrupted by the user") : writer.close();
+  result.samples_hash = writer.samplesHash();
   return result;
 }
 

@@ -30,9 +30,10 @@ SessionInfo manipulationSessionInfo(const ManipulationSessionOptions& options);
 void requirePlanned(const SessionReader& session, std::int64_t trial, std::size_t planned);
 
 struct ManipulationSessionResult {
-  std::size_t trials = 0;    // finished, those of a resumed session's earlier runs included
-  bool interrupted = false;  // the session says so; its finished trials are safe
-  ServoReport servo;         // of all trials of this run
+  std::size_t trials = 0;                       // finished, those of a resumed session's earlier runs included
+  bool interrupted = false;                     // the session says so; its finished trials are safe
+  ServoReport servo;                            // of all trials of this run
+  std::optional<std::uint64_t> samples_hash{};  // SessionWriter::samplesHash()
 };
 
 using TrialProgressLine = std::function<void(const TrialProgress&)>;

@@ -86,6 +86,7 @@ StudyOutcome runStudySession(Experiment& experiment, const StudySession& session
     if (!outcome.interrupted) outcome.interrupted = !ask("after");
     if (!outcome.interrupted && session.host.show) session.host.show({"That was all", {"Thank you."}});
     outcome.interrupted ? writer.abort("interrupted by the user") : writer.close();
+    outcome.samples_hash = writer.samplesHash();
     return outcome;
   } catch (const std::bad_alloc&) {
     writer.abort("not enough memory");

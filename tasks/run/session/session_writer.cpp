@@ -18,6 +18,7 @@
 #include "pincer/contact/error.h"
 #include "pincer/contact/io/part_file.h"
 #include "pincer/tasks/run/session/input_codec.h"
+#include "pincer/tasks/run/session/record_hash.h"
 #include "pincer/tasks/run/session/ring.h"
 #include "pincer/tasks/run/session/session_file.h"
 #include "pincer/tasks/run/session/session_lock.h"
@@ -58,6 +59,7 @@ class SessionWriter::Impl {
   Impl(SessionLock lock, const std::string& path, const SessionOptions& options,
        const std::optional<SessionInfo>& earlier = {})
       : options_(options),
+        is_whole_(!earlier),
         ring_(options.ring_capacity),
         inputs_(options.ring_capacity),
         lock_(std::move(lock)),
@@ -127,6 +129,10 @@ class SessionWriter::Impl {
     giveUp(why, nullptr);
   }
 
+  std::optional<std::uint64_t> samplesHash() const {
+    return closed_ && is_whole_ ? std::optional(samples_.bits()) : std::nullopt;
+  }
+
  private:
   struct Statements {
     explicit Statements(const Database& d)
@@ -184,7 +190,10 @@ class SessionWriter::Impl {
   void write(const Batch& batch) {
     if (batch.trial) database_.run("PRAGMA synchronous = FULL");  // the log is flushed to the disk with this commit
     database_.run("BEGIN");
-    ring_.drain([this](const SampleRecord& sample) { insertRow(statements_->sample, sample); });
+    ring_.drain([this](const SampleRecord& sample) {
+      insertRow(statements_->sample, sample);
+      addValues(sample, samples_);
+    });
     for (const HandsRecord& hands : batch.hands) insertRow(statements_->hands, hands);
     writeInputs();
     for (const EventRecord& event : batch.events) insertRow(statements_->event, event);
@@ -286,6 +295,8 @@ class SessionWriter::Impl {
   }
 
   SessionOptions options_;
+  bool is_whole_;        // from its first sample
+  Fingerprint samples_;  // the writer thread's, until it is joined
   SampleRing ring_;
   InputRing inputs_;
   InputPacker packer_;               // the writer thread's
@@ -343,5 +354,6 @@ void SessionWriter::addSurvey(const SurveyRecord& answer) { impl_->finish(answer
 void SessionWriter::finishResponse(const ResponseRecord& response) { impl_->finish(response); }
 void SessionWriter::close() { impl_->close(); }
 void SessionWriter::abort(std::string_view why) noexcept { impl_->abort(why); }
+std::optional<std::uint64_t> SessionWriter::samplesHash() const { return impl_->samplesHash(); }
 
 }  // namespace pincer::tasks

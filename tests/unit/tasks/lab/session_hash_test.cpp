@@ -62,5 +62,35 @@ TEST(SessionHash, LeavesMeasuredTimesOut) {
   EXPECT_EQ(hashWith(slow), hashWith([](Kept&) {}));
 }
 
+// A run's own hash is taken while samples are written; that of a replay, or of a session gone on with, from the file.
+TEST(SessionHash, WhileWritingIsThatOfTheFile) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "a.db";
+  SessionWriter writer = SessionWriter::create(path, {}, {.block_when_full = true});
+  SampleRecord sample;
+  for (int i = 0; i < 10000; ++i) {
+    sample.p_WB = {i * 0.1, i % 7 == 0 ? std::numeric_limits<double>::quiet_NaN() : -0.0, 1e-300 / (1 + i)};
+    sample.status = static_cast<std::uint32_t>(i);
+    sample.tick_us = i;
+    writer.pushSample(sample);
+  }
+  writer.finishTrial({});
+  EXPECT_FALSE(writer.samplesHash().has_value()) << "before the last is written";
+  writer.close();
+  ASSERT_TRUE(writer.samplesHash().has_value());
+  const SessionReader session(path);
+  EXPECT_EQ(sessionHash(session, writer.samplesHash()), sessionHash(session));
+  EXPECT_NE(sessionHash(session, *writer.samplesHash() + 1), sessionHash(session));
+}
+
+TEST(SessionHash, OfASessionThatWasGoneOnWithIsReadFromTheFile) {
+  const TemporaryDirectory directory;
+  const std::string path = directory / "a.db";
+  SessionWriter::create(path, {}, {.block_when_full = true}).abort("killed");
+  SessionWriter writer = SessionWriter::resume(path, {.block_when_full = true});
+  writer.close();
+  EXPECT_FALSE(writer.samplesHash().has_value());
+}
+
 }  // namespace
 }  // namespace pincer::tasks
