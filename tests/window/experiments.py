@@ -50,8 +50,8 @@ TURNING = {
     "Turn to the right: E, or Control and the mouse": "e",
     "So far the hand goes: let go, turn it back with E, squeeze again": "let go, e",
     "So far the hand goes: let go, turn it back with Q, squeeze again": "let go, q",
-    "Turn the hand back: E": "e",
-    "Turn the hand back: Q": "q",
+    "Turn the hand back to the right: E": "e",
+    "Turn the hand back to the left: Q": "q",
     "The flat faces the monitor: Enter answers": "answer",
 }
 

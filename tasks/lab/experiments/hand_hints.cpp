@@ -39,7 +39,7 @@ const char* turnHint(double hand_turn, double needed, bool pinches) {
                 : "So far the hand goes: let go, turn it back with Q, squeeze again";
   if (pinches)
     return left ? "Turn to the left: Q, or Control and the mouse" : "Turn to the right: E, or Control and the mouse";
-  if (turned > kTurnedBack) return left ? "Turn the hand back: E" : "Turn the hand back: Q";
+  if (turned > kTurnedBack) return left ? "Turn the hand back to the right: E" : "Turn the hand back to the left: Q";
   return "Squeeze: hold the left button, or G";
 }
 

@@ -36,8 +36,8 @@ TEST(HandHints, SayWhichWayToTurnAndWhereTheHandEnds) {
   EXPECT_TRUE(right.starts_with("Turn to the right: E")) << right;
   EXPECT_TRUE(std::string(turnHint(1.19, 1, true)).starts_with("So far the hand goes")) << "1.2 is its end";
   EXPECT_TRUE(std::string(turnHint(1.19, -1, true)).starts_with("Turn to the right")) << "there it can go on";
-  EXPECT_EQ(std::string(turnHint(1.19, 1, false)), "Turn the hand back: E");
-  EXPECT_EQ(std::string(turnHint(-1.19, -1, false)), "Turn the hand back: Q");
+  EXPECT_EQ(std::string(turnHint(1.19, 1, false)), "Turn the hand back to the right: E");
+  EXPECT_EQ(std::string(turnHint(-1.19, -1, false)), "Turn the hand back to the left: Q");
   EXPECT_TRUE(std::string(turnHint(-1.19, 1, false)).starts_with("Squeeze"));
 }
 
