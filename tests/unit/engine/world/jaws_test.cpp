@@ -195,8 +195,8 @@ TEST(Jaws, DontFlingAPropThatAHitJams) {
 }
 
 // The plate comes down over the hinge and 40 mm past it: the arm that is left of its push vanishes on the way. The prop
-// turned at up to 1e11 rad/s; sqrt(2 g/(h R)) with g the plate's speed and that of pushing out an overlap is 253 rad/s at
-// 1.5 m/s, and the law of impact may give 10 g/R.
+// turned at up to 1e11 rad/s; sqrt(2 g/(h R)) with g the plate's speed and that of pushing out an overlap is 249 rad/s
+// at 1.5 m/s, and a hit may give 10 g/R.
 TEST(Jaws, APlateThatPassesAHingeSpinsNoProp) {
   constexpr double kWay = 0.15, kSpeedOut = 0.05;  // [m, m/s]
   for (const double mu : {0.0, 0.6, 1.0}) {
