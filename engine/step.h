@@ -73,8 +73,8 @@ enum StepStatus : std::uint32_t {
   kToleranceNotMet = 1u << 5,  // max_parts were too few for position_tolerance. Raise it, or the tolerance
   // solver.budget ran out: the tick isn't cut any more, impulses are the best iterate. Raise it, or simplify the scene
   kBudgetSpent = 1u << 6,
-  // A joint of a tree turns by more than half a radian in a 64th of the tick: its energy is bounded,
-  // its course isn't exact. Shorten the tick
+  // A joint of a tree turns by more than half a radian in a 64th of the tick, or what is driven pushes a body almost
+  // through its axis (world/budget.h): its energy is bounded, its course isn't exact. Shorten the tick
   kTurnsTooFar = 1u << 7,
 };
 

@@ -114,12 +114,12 @@ namespace {
 bool isSlow(double limit, const Vec3& v, double arm = 1) { return arm * arm * v.squaredNorm() <= limit * limit; }
 
 // Rest, see rest.h.
-bool comesToRest(const BodyModel& body, const BodyScratch& scratch, const Vec3& v_W, const Vec3& L_W) {
+bool comesToRest(const BodyModel& body, const BodyScratch& scratch, const BodyState& s) {
   const double limit = scratch.rest_speed;
   if (limit == 0 || body.joint_group >= 0) return false;
-  if (!isSlow(limit, v_W) || !isSlow(limit, scratch.start.v_W)) return false;
-  const double arm = body.bounding_radius * body.rotation.inverse_moments.maxCoeff();
-  return isSlow(limit, L_W, arm) && isSlow(limit, scratch.start.w_W, body.bounding_radius);
+  if (!isSlow(limit, s.v_W) || !isSlow(limit, scratch.start.v_W)) return false;
+  return isSlow(limit, scratch.start.w_W, body.bounding_radius) &&
+         isSlow(limit, angularVelocity(body.rotation, s.X_WI.q, s.L_W), body.bounding_radius);
 }
 
 void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyState& s) {
@@ -127,7 +127,7 @@ void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyStat
   s.v_W = scratch.free.v_W + body.inverse_mass * scratch.impulse_W;
   s.L_W += scratch.angular_impulse_W;
   scratch.still = false;
-  if (comesToRest(body, scratch, s.v_W, s.L_W)) {
+  if (comesToRest(body, scratch, s)) {
     s.v_W.setZero();
     s.L_W.setZero();
     scratch.end = {s.v_W, s.L_W};

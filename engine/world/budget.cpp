@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/impact.h"
 
 namespace pincer::engine {
 namespace {
@@ -28,6 +32,55 @@ double kineticEnergyOf(const WorldModel& model, const WorldState& state, std::si
   const BodyState& s = state.bodies[i];
   return 0.5 * (model.bodies[i].mass * s.v_W.squaredNorm() +
                 s.L_W.dot(bodyAngularVelocity(model, state, static_cast<int>(i))));
+}
+
+bool touches(const Contact& c, int body) {
+  return (c.a.kind == SideKind::kBody && c.a.index == body) || (c.b.kind == SideKind::kBody && c.b.index == body);
+}
+
+bool isDriven(const WorldModel& model, const Side& side) {
+  return side.kind == SideKind::kBody && model.bodies[side.index].driven;
+}
+
+// g of one contact.
+double speedAgainst(const Contact& c, int body) {
+  const bool is_a = c.a.kind == SideKind::kBody && c.a.index == body;
+  const Motion& other = (is_a ? c.mover_b : c.mover_a)->free;
+  const Vec3 v_W = other.v_W + other.w_W.cross(is_a ? c.arm_b_W : c.arm_a_W);
+  return v_W.norm() + std::clamp(-c.bias_C[kNormalRow], 0.0, kLargestCorrection);
+}
+
+std::span<const int> contactsOf(const WorldScratch& scratch, const Island& island) {
+  return {scratch.islands.order.data() + island.place, static_cast<std::size_t>(island.contacts)};
+}
+
+// Share of the island's impulses with which this body of it doesn't turn too fast.
+double shareOfTurn(const WorldModel& model, const WorldScratch& scratch, const Island& island, int body) {
+  constexpr double kFewTimes = 10, kSlow = 0.02;  // [-, rad in a tick]
+  const double start = scratch.bodies[body].start.w_W.norm(), h = model.options.h,
+               end = endAngularVelocity(model, scratch, body).norm();
+  if (!(end > start) || end * h < kSlow) return 1;
+  double fastest = 0;
+  for (const int i : contactsOf(scratch, island)) {
+    if (touches(scratch.contacts[i], body)) fastest = std::max(fastest, speedAgainst(scratch.contacts[i], body));
+  }
+  const double reach = model.bodies[body].bounding_radius;
+  const double most = std::max({start, std::sqrt(2 * fastest / (h * reach)), kFewTimes * fastest / reach});
+  if (end <= most) return 1;
+  const double free = scratch.bodies[body].free.w_W.norm();
+  return free < most ? (most - free) / (end + free) : 0;
+}
+
+double shareOfTurns(const WorldModel& model, const WorldScratch& scratch, const Island& island) {
+  double share = 1;
+  for (const int i : contactsOf(scratch, island)) {
+    const Contact& c = scratch.contacts[i];
+    if (isDriven(model, c.a) == isDriven(model, c.b) || !c.active()) continue;
+    const Side& side = isDriven(model, c.a) ? c.b : c.a;
+    if (side.kind == SideKind::kBody && model.bodies[side.index].dynamic && model.bodies[side.index].tree < 0)
+      share = std::min(share, shareOfTurn(model, scratch, island, side.index));
+  }
+  return share;
 }
 
 }  // namespace
@@ -57,6 +110,22 @@ void limitEnergy(const WorldModel& model, const WorldScratch& scratch, double mo
     state.bodies[i].v_W *= factor;
     state.bodies[i].L_W *= factor;
   }
+}
+
+bool limitTurns(const WorldModel& model, WorldScratch& scratch) {
+  if (model.driven_count == 0 || scratch.contacts.empty()) return false;
+  bool limits = false;
+  for (const Island& island : scratch.islands.islands) {
+    const double share = shareOfTurns(model, scratch, island);
+    if (share == 1) continue;
+    for (const int i : contactsOf(scratch, island)) {
+      scratch.contacts[i].r *= share;
+      scratch.contacts[i].impulse_W *= share;
+    }
+    limits = true;
+  }
+  if (limits) gatherImpulses(model, scratch);
+  return limits;
 }
 
 }  // namespace pincer::engine

@@ -2,7 +2,7 @@
 //
 // Counted in multiplications, not measured (solve/solver_scratch.h); scratch.operations_left below 0 is spent. Then
 // what is left of the tick is done in one part, however far bodies turn in it, with impulses that are best iterates:
-// its answer is flagged, and must not have more energy than there was.
+// its answer is flagged, and must not have more energy than there was. So must what driven bodies turn.
 #pragma once
 #include "pincer/engine/world/scratch.h"
 
@@ -30,5 +30,15 @@ double energyOf(const WorldModel& model, const WorldState& state, const Vec3& gr
 // Slows the bodies on which contacts push, and those joined to them, all by one factor, until the energy is `most` [J]
 // at most, or they stand. Not where a finger, a driven body or an applied force pushes: those may do work.
 void limitEnergy(const WorldModel& model, const WorldScratch& scratch, double most, WorldState& state);
+
+// Scales the impulses of islands in which what is driven would turn a body faster than its push can last:
+//
+//   w+ <= max(w-, sqrt(2 g/(h R)), 10 g/R)     g  speed of what touches the body, and of pushing out an overlap [m/s]
+//                                              R  how far the body reaches [m];   h  tick [s]
+//
+// A push at the arm a turns a body at g/a, and that turn changes the arm by R w h within the tick: shorter ones than
+// a = (g h R/2)^1/2 are none. A lever that a plate pushes over its own hinge would turn at any speed, and a jammed one
+// would gain speed from tick to tick. The last term is that of a hit, which takes no time. True if there was one.
+bool limitTurns(const WorldModel& model, WorldScratch& scratch);
 
 }  // namespace pincer::engine

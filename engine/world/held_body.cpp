@@ -107,8 +107,9 @@ void predictHeldBody(const WorldModel& model, const WorldState& state, const Joi
 void gatherHeldBody(const WorldModel& model, const JointGroup& g, WorldScratch& scratch, JointGroupScratch& group) {
   BodyScratch& out = scratch.bodies[g.bodies.front()];
   const BodyModel& body = model.bodies[g.bodies.front()];
-  if (!out.touched) return;
   HeldScratch& held = group.held;
+  held.gained_rate = 0;
+  if (!out.touched) return;
   const Motion unit = motionAt(model, g, held, out.X_WI_mid, 1);
   held.gained_rate = held.inverse_inertia * (unit.v_W.dot(out.impulse_W) + unit.w_W.dot(out.angular_impulse_W));
   out.inverse_inertia_W = inverseInertia(body.rotation, out.X_WI_mid.q);

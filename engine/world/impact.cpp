@@ -5,6 +5,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/solve/local_contact.h"
+#include "pincer/engine/world/budget.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/tree_motion.h"
@@ -212,26 +213,49 @@ void sharpenSingleImpact(WorldScratch& scratch) {
   Contact& c = scratch.contacts.front();
   c.r.setZero();
   solveOneContact(W, rows, scratch.q.data(), rows, c.mu, c.r.data());
+  for (int k = 0; k < rows; ++k) {
+    scratch.u[k] = scratch.q[k];
+    for (int l = 0; l < rows; ++l) scratch.u[k] += W[k + l * rows] * c.r[l];
+  }
   c.impulse_W = c.R_WC * c.r.head<3>();
 }
 
-// True if the gathered impulses bring in more kinetic energy than the round-off of what they move.
-bool addsEnergy(const WorldModel& model, const WorldScratch& scratch) {
-  double energy = 0, moved = 0;
-  const auto add = [&](const Vec3& impulse, const Vec3& before, const Vec3& change) {
-    energy += impulse.dot(before + 0.5 * change);
-    moved += std::abs(impulse.dot(before));
-  };
-  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    const BodyScratch& s = scratch.bodies[i];
-    if (!s.touched || !model.bodies[i].dynamic) continue;
-    add(s.impulse_W, s.start.v_W, model.bodies[i].inverse_mass * s.impulse_W);
-    add(s.angular_impulse_W, s.start.w_W, s.inverse_inertia_W * s.angular_impulse_W);
+// Kinetic energy that the hits' impulses r bring in, E(s r) = s along + s^2 response / 2 [J]. By the velocities of the
+// two sides relative to each other, so that what a driven body gives by pushing on isn't counted: a racket may.
+struct BroughtIn {
+  double along = 0;     // r . u-
+  double response = 0;  // r . W r, by what the solve has for u+ = u- + W r + biases
+  double moved = 0;     // sum of |r . u-|
+
+  explicit BroughtIn(const WorldScratch& scratch) {
+    for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
+      const Contact& c = scratch.contacts[i];
+      if (!c.active()) continue;
+      const double* const u = scratch.u.data() + scratch.first_row[i];
+      double work = 0;
+      for (int k = 0; k < rowsOf(c.material); ++k) {
+        const double radius = k >= kTorsionRow ? radiusOf(c, k) : 1, before = radius * c.v_start_C[k];
+        work += c.r[k] * before;
+        response += c.r[k] * (u[k] - before - radius * c.bias_C[k]);
+      }
+      along += work;
+      moved += std::abs(work);
+    }
   }
-  for (const PointScratch& s : scratch.points) {
-    if (s.touched) add(s.impulse_W, s.start.v_W, s.response(s.impulse_W));
+  bool isMore() const { return along + 0.5 * response > kEnergyRoundOff * moved; }
+};
+
+// Scales impulses that bring in energy without any restitution too to the least energy on their ray.
+void takeOutEnergy(const WorldModel& model, WorldScratch& scratch) {
+  const BroughtIn energy(scratch);
+  if (!energy.isMore()) return;
+  const double share = energy.along < 0 ? -energy.along / energy.response : 0;
+  for (Contact& c : scratch.contacts) {
+    c.r *= share;
+    c.impulse_W *= share;
   }
-  return energy > kEnergyRoundOff * moved;
+  scratch.solve.converged = false;
+  gatherImpulses(model, scratch);
 }
 
 }  // namespace
@@ -317,7 +341,7 @@ bool impactsWait(const WorldModel& model, const WorldState& state, const WorldSc
          });
 }
 
-void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source) {
+bool applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source) {
   predictImpact(model, state, scratch);
   collideBodies(model, state, scratch);
   if (source) source->addContacts(scratch);
@@ -332,8 +356,10 @@ void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scra
     solveContacts(model, scratch);
     sharpenSingleImpact(scratch);
     gatherImpulses(model, scratch);
-    if (!addsEnergy(model, scratch)) break;
+    if (!BroughtIn(scratch).isMore()) break;
   }
+  takeOutEnergy(model, scratch);
+  const bool turns_too_far = limitTurns(model, scratch);
   if (!model.trees.empty()) strikeTrees(model, state, scratch);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (!model.bodies[i].dynamic || model.bodies[i].tree >= 0) continue;
@@ -344,6 +370,7 @@ void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scra
     state.points[i].v_W += scratch.points[i].response(scratch.points[i].impulse_W);
     scratch.points[i].tick_impulse_W += scratch.points[i].impulse_W;
   }
+  return turns_too_far;
 }
 
 }  // namespace pincer::engine

@@ -15,7 +15,9 @@
 // something else (a finger) pushes one of them.
 //
 // Newton's law can add energy in oblique hits with friction (T. R. Kane, D. A. Levinson, Dynamics: Theory and
-// Applications, 1985, section 5.8). Then e is lowered, by quarters, until it doesn't; e = 0 never does.
+// Applications, 1985, section 5.8), seen from what is hit: a racket that is driven may. Then e is lowered, by quarters,
+// until it doesn't; e = 0 never does, where the solver has an answer. If it has none, impulses are scaled to the least
+// energy on their ray, flagged.
 // Departure from W. J. Stronge, Impact Mechanics, 2000, whose energetic coefficient needs the course of each hit: for
 // bodies of convex shape that don't rub they are the same.
 #pragma once
@@ -68,7 +70,8 @@ Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int body)
 // And how fast a dynamic body turns, by the inertia of the tick's middle [rad/s].
 Vec3 endAngularVelocity(const WorldModel& model, const WorldScratch& scratch, int body);
 
-// Makes the velocities of `state` those just after the hits at its present poses.
-void applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source);
+// Makes the velocities of `state` those just after the hits at its present poses. True if something
+// had to be kept from turning too far (limitTurns).
+bool applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source);
 
 }  // namespace pincer::engine

@@ -174,7 +174,7 @@ class Tick {
     wakeAll(scratch_);
     if (is_tried_) keepTried(scratch_);
     is_tried_ = false;
-    applyImpacts(model_, state_, scratch_, source_);
+    if (applyImpacts(model_, state_, scratch_, source_)) report_.status |= kTurnsTooFar;
     chargeSurroundings();
     if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
     note();
@@ -269,6 +269,7 @@ class Tick {
     const bool is_rough = isSpent() || turns_far_ || impacts_ == kMostImpacts || haveHitsSpent(scratch_);
     const double energy = is_rough ? energyOf(model_, state_, scratch_.gravity_W) : 0;
     if (turns_far_ && treesTurnFar(model_, state_, scratch_)) report_.status |= kTurnsTooFar;
+    if (limitTurns(model_, scratch_)) report_.status |= kTurnsTooFar;
     advance(model_, state_, scratch_);
     is_tried_ = false;
     scratch_.tried.clear();

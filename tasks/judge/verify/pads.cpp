@@ -137,8 +137,7 @@ std::vector<Record> hold(const PadGrip& grip, MeasureContext& context) {
 }
 
 Measurement holdOf(const char* name, const contact::Shape& shape, double width) {
-  PadGrip grip{shape};
-  grip.width = width;
+  PadGrip grip{.shape = shape, .width = width};
   grip.w_W = Vec3(0, 0.3, 0);
   return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
 }
@@ -172,6 +171,8 @@ contact::PadTip roundPad(double width) {
   return {contact::Polytope::hullOf(corners, "round pad"), kRounding};
 }
 
+contact::Shape smooth(const contact::TriangleMesh& mesh) { return contact::Mesh{contact::SmoothMesh::build(mesh)}; }
+
 // How a solid lies between the pads.
 struct Lie {
   contact::Shape shape;
@@ -188,6 +189,7 @@ std::vector<Lie> lies() {
     for (const double half_length : {0.004, 0.03}) {
       all.push_back({contact::Cylinder{kR, half_length}, kR, angle});
       all.push_back({contact::CylinderWithFlat{kR, half_length, 0.012}, 0.0135, angle, Vec3::UnitX(), 0.0015});
+      all.push_back({smooth(contact::cylinder(kR, half_length, 24, 1)), kR, angle});
     }
     all.push_back({contact::Capsule{kR, 0.01}, kR, angle});
     all.push_back({contact::Box{Vec3(kR, 0.02, 0.025)}, kR, angle});
@@ -220,8 +222,6 @@ std::vector<Record> sweeps(MeasureContext& context) {
   return {unbounded("grips", grips, "-"), atMost("slip in 60 s, the worst", slip, "um", 1e-6),
           atMost("rotation in 60 s, the worst", turn, "rad", 1e-9), exactly("flagged ticks", flagged, "-", 0)};
 }
-
-contact::Shape smooth(const contact::TriangleMesh& mesh) { return contact::Mesh{contact::SmoothMesh::build(mesh)}; }
 
 // Meshes felt as the smooth solids that they stand for: flat faces, a straight wall.
 Measurement meshOf(const char* name, const contact::TriangleMesh& mesh, double half, double width) {

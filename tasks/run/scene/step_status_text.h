@@ -34,8 +34,8 @@ constexpr std::array<StatusKind, 8> kStatusKinds = {{
     {engine::kToleranceNotMet, "tolerance_not_met",
      "solver.max_parts were too few for solver.position_tolerance. Raise max_parts, or the tolerance."},
     {engine::kTurnsTooFar, "turns_too_far",
-     "a joint turned by more than half a radian in a 64th of a tick; its course isn't exact. Shorten the tick, or damp "
-     "the joint."},
+     "a joint turned by more than half a radian in a 64th of a tick, or a driven body pushed something almost through "
+     "its axis; its course isn't exact. Shorten the tick, or damp the joint."},
 }};
 
 class StatusCounts {

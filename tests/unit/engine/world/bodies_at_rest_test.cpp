@@ -154,5 +154,49 @@ TEST(BodiesAtRest, RingAroundAPost) {
   EXPECT_NEAR(weight / model.options.h, 0.1 * kGravity, 1e-6 * kGravity);
 }
 
+// A pyramid of logs of 0.25 kg between two stakes.
+struct Logs {
+  int rows;
+  contact::Shape log;
+  double mu, heading, play;  // [-, rad, m]
+
+  int ticksUntilAsleep(int most) const {
+    constexpr double kRadius = 0.02;
+    WorldOptions options;
+    options.max_contacts = 0;
+    WorldBuilder builder{options};
+    const Quat along = quatFromRotationVector(heading * Vec3::UnitZ()),
+               lying = along * quatFromRotationVector(0.5 * M_PI * Vec3::UnitY());
+    builder.addBody({"floor", contact::HalfSpace{}, false, 0, {mu, mu, 0, 0}});
+    std::vector<BodyStart> starts{{Pose{}, Vec3::Zero(), Vec3::Zero()}};
+    for (const int side : {-1, 1}) {
+      builder.addBody({side < 0 ? "left" : "right", Box{{0.01, 0.01, 0.1}}, false, 0, {mu, mu, 0, 0}});
+      starts.push_back(
+          {{along, along * Vec3(0, side * (rows * kRadius + play + 0.01), 0.1)}, Vec3::Zero(), Vec3::Zero()});
+    }
+    for (int row = 0; row < rows; ++row) {
+      for (int i = 0; i < rows - row; ++i) {
+        builder.addBody({"log" + std::to_string(starts.size()), log, true, 0.25, {mu, mu, 0, 0}});
+        const Vec3 p(0, (2 * i - (rows - row - 1)) * kRadius, (1 + row * std::sqrt(3.0)) * kRadius);
+        starts.push_back({{lying, along * p}, Vec3::Zero(), Vec3::Zero()});
+      }
+    }
+    const WorldModel model = builder.build();
+    WorldState state = makeState(model, starts, {});
+    WorldScratch scratch(model);
+    int ticks = 0;
+    while (ticks < most && !step(model, state, scratch).asleep) ++ticks;
+    return ticks;
+  }
+};
+
+// They stirred by 1e-15 m/s for ever: what turned about a cross axis was judged by its least moment of inertia.
+TEST(BodiesAtRest, LogsBetweenStakesFallAsleep) {
+  const contact::Shape round = contact::Capsule{0.02, 0.1};
+  for (const Logs& logs :
+       {Logs{2, round, 0.3, 0, 0}, Logs{2, round, 0.5, 0, 0}, Logs{3, round, 0.8, 0.4, 0}, Logs{3, round, 0.8, 0, 0}})
+    EXPECT_LT(logs.ticksUntilAsleep(5000), 5000) << logs.rows << ' ' << logs.mu << ' ' << logs.heading;
+}
+
 }  // namespace
 }  // namespace pincer::engine

@@ -184,6 +184,29 @@ TEST(Impact, FastBallDoesNotTunnelThroughAPlate) {
 }
 
 // Boxes and capsules thrown at random: no hit, no friction, no landing brings energy in.
+// A ball at rest before a plate that is driven on at `v`, which Newton's law of impact sends off at (1 + e) v. Its
+// restitution was taken for energy out of nothing and lowered to none.
+TEST(Impact, OfADrivenRacketBounces) {
+  for (const double e : {0.0, 0.3, 0.8, 1.0}) {
+    for (const Vec3& v : {Vec3(0, 0, 0.5), Vec3(0, 0, 8), Vec3(0, 0.6, 2)}) {
+      WorldOptions options;
+      options.gravity_W.setZero();
+      WorldBuilder builder(options);
+      builder.addBody({"ball", contact::Sphere{kBallRadius}, true, 0.1, {0, 0, e, 0}});
+      builder.addBody({"racket", contact::Box{Vec3(0.2, 0.2, 0.01)}, false, 0, {0, 0, e, 0}, true});
+      const WorldModel model = builder.build();
+      const auto racketAt = [&](double t) { return Vec3(t * v - Vec3(0, 0, 0.0316)); };
+      WorldState state = makeState(model, {startAt(Vec3::Zero()), startAt(racketAt(0), v)}, {});
+      WorldScratch scratch(model);
+      for (int i = 1; i <= 20; ++i) {
+        const MotionInput racket{{Quat::Identity(), racketAt(1e-3 * i)}, {v, Vec3::Zero()}};
+        EXPECT_EQ(step(model, state, scratch, StepInputs{{}, {&racket, 1}}).status, kStepOk);
+      }
+      EXPECT_NEAR(state.bodies[0].v_W.z(), (1 + e) * v.z(), 1e-12 * v.z()) << e;
+    }
+  }
+}
+
 TEST(Impact, ThrownBodiesNeverGainEnergy) {
   tests::RandomNumbers random(5);
   for (int n = 0; n < 40; ++n) {

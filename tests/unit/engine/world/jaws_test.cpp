@@ -194,6 +194,23 @@ TEST(Jaws, DontFlingAPropThatAHitJams) {
   }
 }
 
+// The plate comes down over the hinge and 40 mm past it: the arm that is left of its push vanishes on the way. The prop
+// turned at up to 1e11 rad/s; sqrt(2 g/(h R)) with g the plate's speed and that of pushing out an overlap is 249 rad/s
+// at 1.5 m/s, and a hit may give 10 g/R.
+TEST(Jaws, APlateThatPassesAHingeSpinsNoProp) {
+  constexpr double kWay = 0.15, kSpeedOut = 0.05;  // [m, m/s]
+  for (const double mu : {0.0, 0.6, 1.0}) {
+    for (const double lean : {0.05, 0.3, 0.6}) {
+      for (const double speed : {0.1, 1.5}) {
+        const Prop prop{mu, 0.3, lean, speed, 1e-3, false, static_cast<int>(kWay / (speed * 1e-3))};
+        const double g = speed + kSpeedOut, reach = 0.5 * Prop::kLength;
+        const double fastest = std::max(std::sqrt(2 * g / (prop.tick * reach)), 10 * g / reach);
+        EXPECT_LE(prop.fastestTip(), 1.05 * fastest * Prop::kLength / speed) << mu << ' ' << lean << ' ' << speed;
+      }
+    }
+  }
+}
+
 TEST(Jaws, TheSameBitsOnTwoThreadsAndAgain) {
   const auto hashAfter = [](int threads) {
     Jaws jaws(contact::Box{Vec3(kHalf, kHalf, kHalf)}, 0.02, 1e-3, threads);

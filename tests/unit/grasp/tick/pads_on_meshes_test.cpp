@@ -74,6 +74,23 @@ TEST(PadOnMesh, StandsOnALineOfAStraightWall) {
   EXPECT_LT(spanOf(found).sizes().y(), 1e-4);
 }
 
+// The line was known where the pad's edges cross it only: at one place of a wall that ends under the pad.
+TEST(PadOnMesh, StandsOnTheEndsOfAWallThatIsShorterThanThePad) {
+  for (const int sides : {12, 24, 48}) {
+    for (const double half : {0.002, 0.006}) {
+      const TriangleMesh upright = lathe({{0, -half}, {0.018, -half}, {0.018, half}, {0, half}}, sides);
+      for (const double roll : {0.0, 0.1, 0.26}) {
+        const Quat q = tests::about(Vec3(1, 0, 0), roll) * tests::about(Vec3(0, 1, 0), M_PI / 2);
+        const FingerContacts found = padOnTop(smooth(transformed(upright, {q, Vec3::Zero()})), 0.018, 0.2);
+        ASSERT_EQ(found.count, 2) << sides << ' ' << half << ' ' << roll;
+        EXPECT_NEAR(found.points[0].phi, found.points[1].phi, 1e-9);
+        EXPECT_NEAR(spanOf(found).max().x(), half, 1e-9);
+        EXPECT_NEAR(spanOf(found).min().x(), -half, 1e-9);
+      }
+    }
+  }
+}
+
 TEST(PadOnMesh, TouchesABallAtOnePlace) {
   const FingerContacts found = padOnTop(smooth(geodesicSphere(0.018, 12)), 0.018);
   EXPECT_EQ(found.count, 1);
@@ -120,35 +137,66 @@ TEST(PadOnMesh, AsksNoEdgeThatIsFarFromABall) {
 namespace pincer::grasp {
 namespace {
 
+struct Creep {
+  double way, turn;  // in three seconds, from one second on [m, rad]
+  int flagged;
+};
+
+// Of a turned part 36 mm thick, about the z axis, nudged between two pads of the half width `half`.
+Creep creepBetweenPads(const std::vector<Vec2>& profile, int sides, double touch, double half, double patch_radius,
+                       const Vec3& w_W) {
+  engine::WorldBuilder builder{engine::WorldOptions{}};
+  builder.addBody({"part", contact::smooth(contact::lathe(profile, sides)), true, 0.1, {0.6, 0.6, 0, 0}});
+  std::vector<FingerModel> fingers = {tests::softFinger("left", 5000), tests::softFinger("right", 5000)};
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1.5e-3 : -1.5e-3, i & 2 ? half : -half, i & 4 ? half : -half});
+  for (FingerModel& f : fingers) {
+    f.shape = contact::PadTip{contact::Polytope::hullOf(corners, "pad"), 5e-4};
+    f.pad.patch_radius = patch_radius;
+  }
+  const GraspModel model = buildGrasp(builder, fingers);
+  GraspState state = makeState(model, {tests::startAt(Vec3(0, 0, 0.1), Vec3::Zero(), w_W)},
+                               {Vec3(-touch, 0, 0.1), Vec3(touch, 0, 0.1)});
+  GraspScratch scratch(model);
+  std::vector<FingerInput> inputs(2);
+  for (int i = 0; i < 2; ++i)
+    inputs[static_cast<std::size_t>(i)].p_WF = Vec3((i == 0 ? -1 : 1) * (touch - 3e-3), 0, 0.1);
+  for (int i = 0; i < 1000; ++i) step(model, state, scratch, inputs);
+  const Pose held = state.world.bodies[0].X_WI;
+  int flagged = 0;
+  for (int i = 0; i < 3000; ++i) flagged += step(model, state, scratch, inputs).status != engine::kStepOk;
+  const Pose& now = state.world.bodies[0].X_WI;
+  return {(now.p - held.p).norm(), angleBetween(now.q, held.q), flagged};
+}
+
 // A barrel between two pads buzzed, as each pad's edges and its middle took turns, and a spool rocked off.
 TEST(PadOnMesh, HoldsABarrelAndASpool) {
   for (const double bulge : {0.003, -0.003}) {
     std::vector<Vec2> profile{{0, -0.02}};
     for (int i = 0; i <= 16; ++i) profile.push_back({0.018 + bulge * math::sin(M_PI * i / 16), -0.02 + 0.04 * i / 16});
     profile.push_back({0, 0.02});
-    engine::WorldBuilder builder{engine::WorldOptions{}};
-    builder.addBody({"part", contact::smooth(contact::lathe(profile, 48)), true, 0.1, {0.6, 0.6, 0, 0}});
-    std::vector<FingerModel> fingers = {tests::softFinger("left", 5000), tests::softFinger("right", 5000)};
-    std::vector<Vec3> corners;
-    for (int i = 0; i < 8; ++i)
-      corners.push_back({i & 1 ? 1.5e-3 : -1.5e-3, i & 2 ? 0.022 : -0.022, i & 4 ? 0.022 : -0.022});
-    for (FingerModel& f : fingers) {
-      f.shape = contact::PadTip{contact::Polytope::hullOf(corners, "pad"), 5e-4};
-      f.pad.patch_radius = 0.004;
-    }
-    const GraspModel model = buildGrasp(builder, fingers);
     const double touch = std::max(0.018, 0.018 + bulge) + 2e-3;
-    GraspState state = makeState(model, {tests::startAt(Vec3(0, 0, 0.1), Vec3::Zero(), Vec3(0, 0.3, 0))},
-                                 {Vec3(-touch, 0, 0.1), Vec3(touch, 0, 0.1)});
-    GraspScratch scratch(model);
-    std::vector<FingerInput> inputs(2);
-    for (int i = 0; i < 2; ++i)
-      inputs[static_cast<std::size_t>(i)].p_WF = Vec3((i == 0 ? -1 : 1) * (touch - 3e-3), 0, 0.1);
-    for (int i = 0; i < 1000; ++i) step(model, state, scratch, inputs);
-    const Pose held = state.world.bodies[0].X_WI;
-    for (int i = 0; i < 3000; ++i) EXPECT_EQ(step(model, state, scratch, inputs).status, engine::kStepOk);
-    EXPECT_LT((state.world.bodies[0].X_WI.p - held.p).norm(), 1e-9) << bulge;
-    EXPECT_LT(angleBetween(state.world.bodies[0].X_WI.q, held.q), 1e-7) << bulge;
+    const Creep creep = creepBetweenPads(profile, 48, touch, 0.022, 0.004, Vec3(0, 0.3, 0));
+    EXPECT_EQ(creep.flagged, 0) << bulge;
+    EXPECT_LT(creep.way, 1e-9) << bulge;
+    EXPECT_LT(creep.turn, 1e-7) << bulge;
+  }
+}
+
+// Pads of 30 and 40 mm let go of one of 24 sides, 24 mm high, and one of 12 mm turned by 1e-6 rad per second.
+TEST(PadOnMesh, HoldsAWallThatEndsUnderThePads) {
+  for (const double half_height : {0.003, 0.012, 0.02}) {
+    const std::vector<Vec2> profile{{0, -half_height}, {0.018, -half_height}, {0.018, half_height}, {0, half_height}};
+    for (const int sides : {12, 24}) {
+      for (const double half : {0.01, 0.015, 0.02}) {
+        for (const Vec3& w_W : {Vec3(0, 0.3, 0), Vec3(0.2, -0.1, 0.2)}) {
+          const Creep creep = creepBetweenPads(profile, sides, 0.02, half - 5e-4, 0, w_W);
+          EXPECT_EQ(creep.flagged, 0) << half_height << ' ' << sides << ' ' << half;
+          EXPECT_LT(creep.way, 1e-12) << half_height << ' ' << sides << ' ' << half;
+          EXPECT_LT(creep.turn, 1e-9) << half_height << ' ' << sides << ' ' << half;
+        }
+      }
+    }
   }
 }
 
