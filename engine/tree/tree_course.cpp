@@ -89,8 +89,10 @@ void goByTheMiddle(const TreeModel& tree, const BaseCourse& base, const TreePush
                    double h, TreeCourse& course) {
   std::copy(u.begin(), u.end(), course.u.begin());
   respond(tree, base, push, u, h, course, course.slope);
-  addTimes(0.5, course.slope, course.u);
-  respond(tree, base, push, u, h, course, course.slope);
+  if (!push.pressed) {
+    addTimes(0.5, course.slope, course.u);
+    respond(tree, base, push, u, h, course, course.slope);
+  }
   moveLinks(tree, base.mid, course.q, u, course.mid);
   for (std::size_t c = 0; c < u.size(); ++c) {
     course.u_free[c] = u[c] + course.slope[c];
@@ -237,10 +239,26 @@ void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& 
   }
 }
 
-void placeFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const double> q, TreeCourse& course) {
-  growCoordinates(tree, q, course.way_free, course.q);
+void moveFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const double> q, std::span<const double> u,
+                 double h, TreeCourse& course) {
+  for (std::size_t c = 0; c < u.size(); ++c) {
+    course.step[c] = 0.5 * h * u[c];
+    course.u[c] = course.u_free[c] - u[c];
+  }
+  growCoordinates(tree, q, course.step, course.q);
+  TreeBase standing = base.end;
+  standing.motion = {};
+  placeLinks(tree, standing, course.q, course.stage);
+  moveLinks(tree, standing, course.q, course.u, course.stage);
+  for (std::size_t c = 0; c < u.size(); ++c) course.step[c] = h * u[c];
+  growCoordinates(tree, q, course.step, course.q);
   placeLinks(tree, base.end, course.q, course.end);
-  moveLinks(tree, base.end, course.q, course.u_free, course.end);
+  moveLinks(tree, base.end, course.q, u, course.end);
+  for (std::size_t l = 0; l < course.end.links.size(); ++l) {
+    Motion& motion = course.end.links[l].motion;
+    const Motion& gained = course.stage.links[l].motion;
+    motion = {motion.v_W + gained.v_W, motion.w_W + gained.w_W};
+  }
 }
 
 void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& gain, double t, std::span<const double> q,

@@ -4,7 +4,8 @@
 //   M^ Du = h (tau - C(q_m, u + h a/2)) + p + J^T r,        M^ h a = h (tau - C(q_m, u)) + p
 //
 // q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h;
-// tau of what is constant. Loops are closed in all of these (loop_closure.h).
+// tau of what is constant. Loops are closed in all of these (loop_closure.h). Of a tree that contacts press C is that of
+// u: a is far from how it moves, and a grasp at rest would feel forces of a motion that isn't there.
 //
 // A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls
 // by exponentials: H. Munthe-Kaas, Appl. Numer. Math. 29 (1999) 115-127); on a base at rest in up to four steps, if a
@@ -36,6 +37,7 @@ struct TreePush {
   std::span<const DriveTick> drives{};  // one per drive of the tree
   std::span<const double> constant{};   // forces that stay all through the tick, by coordinates, or none
   bool may_be_fine = true;              // the free course by Runge and Kutta, if all is soft
+  bool pressed = false;                 // contacts hold back what drives would do in the tick
   std::span<const char> locked{};       // true for columns that stop and stay; empty if none do
 };
 
@@ -64,7 +66,7 @@ struct TreeCourse {
   std::vector<double> inertia, asked;          // M^, and h (tau - C) + p, where columns are locked
   std::vector<ElementCourse> springs, drives;  // of coordinates; of drives
   std::vector<double> u_free, way_free;        // by columns: rates at the end, steps until then
-  TreePlace end;                               // as placeFreeEnd or advanceTree left it
+  TreePlace end;                               // as moveFreeEnd or advanceTree left it
   // Scratch.
   std::vector<LinkBias> biases;
   std::vector<CompositeInertia> composite;
@@ -80,8 +82,14 @@ struct TreeCourse {
 void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
                  std::span<const double> u, double h, TreeCourse& course);
 
-// Places and motions at the end of the free course, in `course.end`.
-void placeFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const double> q, TreeCourse& course);
+// Motions at the end of the free course as contacts in the middle see them, in `course.end`:
+//
+//   J(q (+) h u) u + J(q_m) (u_free - u),   the base at the tick's end
+//
+// The turn is that of the rates at the start: by those of the free course a drive that presses a link against
+// something would turn it through that, and what rests would seem to move.
+void moveFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const double> q, std::span<const double> u,
+                 double h, TreeCourse& course);
 
 // How the tick went once impulses have changed the columns' rates at its end by `gained`. `closing`: all the way goes
 // by the rates at the end, for what lands.

@@ -110,6 +110,12 @@ inline bool isOfSameTwo(const Contact& x, const Contact& y) { return isSame(x.a,
 //   shape_bits  s of the model: 0 where each body has one shape
 std::uint64_t contactId(int shape_bits, const Side& a, const Side& b, std::uint32_t feature);
 
+// Whose contact an identity is of: bodies a and b, a point's with b alone, or a joint's row. -1: none.
+struct ContactOwners {
+  int a = -1, b = -1, row = -1;
+};
+ContactOwners ownersOf(int shape_bits, std::uint64_t id);
+
 // Two identities of the same two bodies, or of the same point and body,
 // whichever shapes touch. Those follow each other.
 inline bool isOfSameTwo(int shape_bits, std::uint64_t x, std::uint64_t y) {

@@ -19,7 +19,8 @@ namespace pincer::engine {
 namespace {
 
 constexpr int kSettlingTicks = 24;  // stick offsets halve per tick: from the tolerance to round-off
-constexpr int kRingingTicks = 240;  // the same of bodies that ring on the springs of flat pads, by 5 % per tick
+// the same of bodies that ring on the springs of flat pads, by 5 % per tick, and of links whose drives relax
+constexpr int kRingingTicks = 240;
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
 int moverOf(const WorldModel& model, const WorldScratch& scratch, const Contact& c, bool is_a) {
@@ -302,7 +303,8 @@ double restSpeed(const Island& island, const SolverOptions& options) {
 }
 
 void scatter(const IslandScratch& s, const Island& island, const SolverOptions& options, WorldScratch& scratch) {
-  const int settling = nextSettling(island, isHeldByPads(s, island, scratch), options.tolerance);
+  const bool rings = isHeldByPads(s, island, scratch) || holdsTrees(s, island);
+  const int settling = nextSettling(island, rings, options.tolerance);
   const double rest_speed = island.result.method == SolveMethod::kWarmStart ? restSpeed(island, options) : 0;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   Contact* const contacts = scratch.contacts.data();

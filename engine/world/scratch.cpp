@@ -150,6 +150,16 @@ std::uint64_t contactId(int shape_bits, const Side& a, const Side& b, std::uint3
          feature;
 }
 
+ContactOwners ownersOf(int shape_bits, std::uint64_t id) {
+  const auto take = [id](int from, int bits) {
+    return static_cast<int>(id >> from & ((std::uint64_t{1} << bits) - 1));
+  };
+  const int bits = kNumberBits - shape_bits;
+  if (id >> 63) return {.row = take(32, 2 * kNumberBits)};
+  if (id >> 62) return {.b = take(32 + shape_bits, bits)};
+  return {.a = take(32 + kNumberBits + shape_bits, bits), .b = take(32 + 2 * shape_bits, bits)};
+}
+
 Contact* addContact(WorldScratch& scratch, double phi) {
   std::vector<Contact>& contacts = scratch.contacts;
   PINCER_ASSERT(scratch.sleep.room <= contacts.capacity());  // the tick allocates nothing

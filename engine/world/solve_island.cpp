@@ -4,12 +4,15 @@
 
 #include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/few_contacts.h"
+#include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/round_contact.h"
+#include "pincer/engine/solve/search.h"
 #include "pincer/engine/solve/sweeps.h"
 #include "pincer/engine/world/budget.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/island_bias.h"
 #include "pincer/engine/world/scratch.h"
+#include "pincer/engine/world/tree_sides.h"
 #include "pincer/engine/world/wedge.h"
 
 namespace pincer::engine {
@@ -49,6 +52,7 @@ class IslandSolve {
       return;
     }
     is_loop_&& scratch_.h > 0 ? solveLoop() : solveOne();
+    if (isInexact()) polish();
     if (pushesInVain()) solveWithoutPushes();
     if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
       fit(PushingBy::kWedged);
@@ -118,6 +122,23 @@ class IslandSolve {
     dropPushes();
     std::fill(island_.r, island_.r + island_.rows, 0.0);
     solveAgain(options_);
+  }
+
+  // Strictness asks for more than was found: where friction is used up at no slip, Newton's method for few contacts
+  // gets no nearer.
+  bool isInexact() const {
+    const SolveResult& found = island_.result;
+    return problem_.strict && island_.contacts <= kFewContacts && found.converged && found.give == 0 &&
+           scratch_.h > 0 && holdsTrees(scratch_.islands, island_) &&
+           found.residual > exactResidual(options_.tolerance, referenceSpeed(problem_));
+  }
+  void polish() {
+    const SolveResult first = island_.result;
+    SolveResult& found = island_.result = searchImpulses(problem_, options_, memory_, island_.r, island_.u);
+    found.iterations += first.iterations;
+    found.start = first.start;
+    found.converged = true;
+    found.method = first.method;
   }
 
   void fit(PushingBy pushing) {

@@ -138,6 +138,7 @@ TreePush pushOn(const WorldScratch& scratch, const TreeModel& tree, const TreeSc
           .drives = s.drives,
           .constant = s.constant,
           .may_be_fine = movesAlone(tree),
+          .pressed = s.was_pressed,
           .locked = s.has_locked ? std::span<const char>(s.locked) : std::span<const char>{}};
 }
 
@@ -162,6 +163,21 @@ bool comesToRest(const WorldModel& model, const WorldScratch& scratch, const Tre
   return true;
 }
 
+// Which trees contacts, stops or brakes pushed on in the last part of a tick.
+void notePressed(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  for (TreeScratch& s : scratch.trees) s.was_pressed = false;
+  const auto note = [&](int tree) {
+    if (tree >= 0) scratch.trees[tree].was_pressed = true;
+  };
+  for (int k = 0; k < state.contact_count; ++k) {
+    if (!state.contacts[k].active) continue;
+    const ContactOwners owners = ownersOf(model.shape_bits, state.contacts[k].id);
+    if (owners.a >= 0) note(model.bodies[owners.a].tree);
+    if (owners.b >= 0) note(model.bodies[owners.b].tree);
+    if (owners.row >= 0) note(scratch.joint_rows[owners.row].tree);
+  }
+}
+
 }  // namespace
 
 TreeScratch::TreeScratch(const TreeModel& tree)
@@ -173,6 +189,7 @@ TreeScratch::TreeScratch(const TreeModel& tree)
 }
 
 void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
+  notePressed(model, state, scratch);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const TreeModel& tree = model.trees[t];
     TreeScratch& s = scratch.trees[t];
@@ -185,7 +202,7 @@ void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch
     s.course.rough = turnsFar(tree, s, u, scratch.h);
     if (s.course.rough) limitFreeCourse(tree, s.base, push, q, u, scratch.h, s.course);
     s.touched = s.closing = false;
-    if (tree.may_touch) placeFreeEnd(tree, s.base, q, s.course);
+    if (tree.may_touch) moveFreeEnd(tree, s.base, q, u, scratch.h, s.course);
     for (int l = 0; l < static_cast<int>(tree.links.size()); ++l)
       showLink(model, state, tree, l, s, scratch.bodies[tree.links[l].body]);
   }

@@ -25,7 +25,8 @@ struct TreeScratch {
   std::vector<char> locked, pressed;
   bool has_locked = false;
   std::vector<double> held;
-  bool rests = false;  // nothing of it changed in this part of the tick
+  bool was_pressed = false;  // something pushed on a link or a joint in the last part of a tick
+  bool rests = false;        // nothing of it changed in this part of the tick
   // Between uses.
   std::vector<double> row, q;
 };

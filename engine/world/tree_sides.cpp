@@ -83,6 +83,13 @@ void findBlocks(const WorldModel& model, IslandScratch& s) {
   s.sides_per_contact = 2 * longest;
 }
 
+bool holdsTrees(const IslandScratch& s, const Island& island) {
+  const int* const order = s.order.data() + island.place;
+  return !s.block_parent.empty() && std::any_of(order, order + island.contacts, [&](int i) {
+    return std::max(s.ends[i].a, s.ends[i].b) >= s.first_block;
+  });
+}
+
 int moverOfLink(const WorldModel& model, const BodyModel& link) {
   const TreeModel& tree = model.trees[link.tree];
   return moverOfColumn(model, tree, tree.links[link.link].tip);

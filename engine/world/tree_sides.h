@@ -27,6 +27,9 @@ inline int parentOf(const IslandScratch& s, int mover) {
                                                                        : -1;
 }
 
+// True if contacts of the island push on trees, whose drives come to rest over many ticks.
+bool holdsTrees(const IslandScratch& s, const Island& island);
+
 // A's block of a contact's side and one of the movers of that.
 [[gnu::noinline]] void fillTreeSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, int rows,
                                     bool is_a, int mover, ContactSide& out);
