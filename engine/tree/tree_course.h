@@ -4,8 +4,8 @@
 //   M^ Du = h (tau - C(q_m, u + h a/2)) + p + J^T r,        M^ h a = h (tau - C(q_m, u)) + p
 //
 // q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h;
-// tau of what is constant. Loops are closed in all of these (loop_closure.h). Of a tree that contacts press C is that of
-// u: a is far from how it moves, and a grasp at rest would feel forces of a motion that isn't there.
+// tau of what is constant. Loops are closed in all of these (loop_closure.h). Of a tree that contacts press C is that
+// of u: a is far from how it moves, and a grasp at rest would feel forces of a motion that isn't there.
 //
 // A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls
 // by exponentials: H. Munthe-Kaas, Appl. Numer. Math. 29 (1999) 115-127); on a base at rest in up to four steps, if a

@@ -13,8 +13,8 @@ constexpr int kBall = 1;
 constexpr double kBallRadius = 0.02, kTip = 8e-3;  // [m]
 constexpr double kStiffness = 400;                 // of the fingers of pickup [N/m]
 constexpr double kCloseSpeed = 0.1;                // of the fingers [m/s]
-// Of the hand's middle, which goes towards the pointer the faster, the farther off it is. A ball of 75 g that starts with
-// the hand weighs a quarter more meanwhile. [m/s, 1/s, m/s^2]
+// Of the hand's middle, which goes towards the pointer the faster, the farther off it is. A ball of 75 g that starts
+// with the hand weighs a quarter more meanwhile. [m/s, 1/s, m/s^2]
 constexpr double kTopSpeed = 0.2, kFollow = 10, kMostAcceleration = 2.5;
 constexpr double kOpen = 0.09;                   // between the fingertips of an open hand [m]
 constexpr double kLowest = 9e-3, kReach = 0.12;  // where the hand's middle may be: z at least, and from the origin [m]

@@ -12,7 +12,7 @@
 
 namespace pincer::tasks {
 
-// What a person in front of the page wants.
+// The wish of a person in front of the page.
 struct PlayWish {
   Vec3 p_W = Vec3::Zero();  // of the pointer: the middle of the hand, or where the ball is pulled to [m]
   bool squeezes = false;    // pickup: the fingers close; pinch: the spring pulls

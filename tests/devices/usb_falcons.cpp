@@ -82,7 +82,7 @@ TEST_F(UsbFalcons, AreWornByTwoFingersAtOnceEachByTheOneThatWasAskedFor) {
   }));
 }
 
-// `devices test` had never been seen with one: rest, the push through the gate, and what it says of a grip that is held.
+// Rest, the push through the gate, and what it says of a grip that is held.
 TEST_F(UsbFalcons, AreFitWhenTheirGripFollowsThePushAndNotWhenItIsHeld) {
   std::vector<std::string> command = {"devices",        "test",    "FA",  "--devices", "falcon",     "--firmware",
                                       options.firmware, "--force", "0.3", "--yes",     "--watchdog", "50"};

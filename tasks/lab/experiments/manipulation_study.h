@@ -62,7 +62,7 @@ struct ManipulationTrial {
 // Every trial, in the order of its doing. Throws as validate().
 std::vector<ManipulationTrial> manipulationTrials(const ManipulationStudy& study);
 
-// What is picked up in each condition, by its name. Throws as makePickupObject().
+// The thing that is picked up in each condition, by its name. Throws as makePickupObject().
 using PickupObjects = std::map<std::string, PickupObject>;
 PickupObjects makePickupObjects(const ManipulationStudy& study);
 

@@ -85,7 +85,7 @@ std::vector<NamedCondition> studyConditions(const SessionInfo& info) {
   return conditions;
 }
 
-// Those that trials were done in.
+// The conditions that trials were done in.
 void addConditions(SessionSummary& s, std::set<std::string> done) {
   for (const NamedCondition& c : studyConditions(s.info)) {
     if (done.erase(c.name) == 0) continue;

@@ -1,5 +1,5 @@
-// record_hash: records as numbers of a fingerprint. Times that were measured are left out; NaNs are one value, and so are
-// the two zeros, as in the store.
+// record_hash: records as numbers of a fingerprint. Times that were measured are left out; NaNs are one value, and so
+// are the two zeros, as in the store.
 #pragma once
 #include <bit>
 #include <limits>

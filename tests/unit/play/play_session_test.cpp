@@ -1,4 +1,4 @@
-// What the page that computes lets a person do, against closed forms.
+// The page that computes: a person's actions there, against closed forms.
 #include "pincer/tasks/play/play_session.h"
 
 #include <gtest/gtest.h>

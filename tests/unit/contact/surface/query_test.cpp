@@ -319,7 +319,7 @@ TEST(SurfaceQuery, TellsWhatAFingerWillNotFeelWell) {
   EXPECT_TRUE(SmoothMesh::build(icosphere(0.02, 2))->findings(kFinger).empty());
   const auto tight = SmoothMesh::build(torus(0.02, 0.015, 24, 16));  // a hole of 5 mm radius
   ASSERT_EQ(tight->findings(kFinger).size(), 1u);
-  EXPECT_NE(tight->findings(kFinger)[0].find("8 mm radius doesn't fit"), std::string::npos)
+  EXPECT_NE(tight->findings(kFinger)[0].find("hollow has 5 mm radius; a finger of 8 mm needs 10 mm"), std::string::npos)
       << tight->findings(kFinger)[0];
   EXPECT_TRUE(tight->findings(0.002).empty());
 }

@@ -1,4 +1,4 @@
-// What the window tells somebody at a mouse to do next.
+// Hints that the window gives somebody at a mouse.
 #include "pincer/tasks/lab/experiments/hand_hints.h"
 
 #include <gtest/gtest.h>
