@@ -14,6 +14,7 @@
 namespace pincer::math {
 namespace {
 
+// The answer of asin and acos beyond +-1.
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr int kParts = 32, kFirst = 7;  // from 7/32 on by the table
 
@@ -90,6 +91,7 @@ double atan(double x) {
 double atan2(double y, double x) {
   if (x != x || y != y) return x + y;
   const double rise = magnitude(y), run = magnitude(x);
+  // An infinite side has no significand: alongAxis answers for it.
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   if (rise == 0 || run == 0 || rise == kInfinite || run == kInfinite) return alongAxis(y, x);
   const Significand a = significandOf(rise), b = significandOf(run);

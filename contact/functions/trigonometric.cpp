@@ -16,10 +16,11 @@ namespace {
 __extension__ typedef unsigned __int128 Uint128;
 __extension__ typedef __int128 Int128;
 
+// 2/pi; pi/2 in parts of which the first three have at most 33 bits; pi/4, up to which nothing is reduced [rad].
 constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
 constexpr double kHalfPiParts[] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69, 0x1.b839a252049c1p-104};
-constexpr double kMostByParts = 0x1p20;  // k of 20 bits times 33 bits: exact
-constexpr double kQuarterPi = 0x1.921fb54442d18p-1;
+constexpr double kMostByParts = 0x1p20;              // k of 20 bits times 33 bits: exact
+constexpr double kQuarterPi = 0x1.921fb54442d18p-1;  // [rad]: up to here nothing is reduced
 
 // Angles below are their own sine to half an ulp.
 constexpr double kTiny = 0x1p-27;
@@ -122,6 +123,7 @@ constexpr Both kBoth[] = {{kSine[0], kCosine[0]}, {kSine[1], kCosine[1]}, {kSine
 
 // Sine and cosine to 2^-57, for quotients of them: here the series begins where the exact cube ends.
 DoubleDouble preciseSine(const DoubleDouble& r) {
+  // 1/3! to twice the digits: a double would cost the bits that the exact cube keeps.
   constexpr DoubleDouble kSixth = DoubleDouble{1} / DoubleDouble{6};
   const double z = r.hi * r.hi;
   const DoubleDouble cubic = -r.hi * (exactProduct(r.hi, r.hi) * kSixth), sum = sumOfOrdered(r.hi, cubic.hi);
