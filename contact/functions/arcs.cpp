@@ -33,6 +33,7 @@ constexpr auto kArcs = [] {
   return arcs;
 }();
 
+// Terms after the first, of ratios up to 13/64 and of t up to 1/64: the next would be below 2^-64 and 2^-63 of it.
 constexpr double kSeries[] = {-1.0 / 3,  1.0 / 5,  -1.0 / 7,  1.0 / 9,  -1.0 / 11, 1.0 / 13,
                               -1.0 / 15, 1.0 / 17, -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25};
 constexpr double kShortSeries[] = {-1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9};

@@ -77,6 +77,7 @@ Parts partsOf(double x) {
   return partsOf(s.m, s.exponent);
 }
 
+// Terms of log(1 + r) from r^3 on: of |r| < 2^-7 the next is below 2^-66.
 constexpr double kSeries[] = {1.0 / 3, -1.0 / 4, 1.0 / 5, -1.0 / 6, 1.0 / 7, -1.0 / 8};
 
 double valueOf(const Parts& parts) {
