@@ -30,11 +30,12 @@ struct CoreTracker {
 
 // Memory of a finger that isn't a sphere from query to query; a plain value, like SurfaceTracker.
 struct FingerTracker {
-  static constexpr int kFeet = 4;
+  static constexpr int kFeet = 4;       // chosen: a capsule has two ends, of a pad up to four corners are led downhill
   CoreTracker main;                     // the deepest place of the core
   std::array<CoreTracker, kFeet> feet;  // of a capsule its two ends, of a pad see shape/pad_query.h
 };
 
+// A ball's and one per foot; of a pad's points with a solid the deepest are kept.
 constexpr int kMaxFingerContacts = kMaxSurfaceContacts + FingerTracker::kFeet;
 struct FingerContacts {
   std::array<SurfaceContact, kMaxFingerContacts> points;

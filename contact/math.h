@@ -43,8 +43,8 @@ inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y()
 // 1 or -1; not copysign: -0.0 must choose like 0.0.
 inline double signOf(double a) { return a < 0 ? -1 : 1; }
 
-constexpr double kDegree = M_PI / 180;  // [rad]
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDegree = M_PI / 180;                                 // [rad]
+constexpr double kInfinity = std::numeric_limits<double>::infinity();  // a bound in any unit that bounds nothing
 
 // Right-handed orthonormal frame whose third column is the unit vector `n`; columns (t1, t2, n).
 // Continuous in n but for n = -z. Source: T. Duff et al., "Building an orthonormal basis, revisited", JCGT 6(1), 2017.

@@ -10,7 +10,7 @@ namespace pincer::contact {
 
 enum class MeshFormat : std::uint8_t { obj, stl, ply, off };
 
-constexpr std::string_view kMeshFormats = "OBJ, STL, PLY or OFF";
+constexpr std::string_view kMeshFormats = "OBJ, STL, PLY or OFF";  // for messages
 
 // "OBJ", "STL", "PLY", "OFF".
 std::string_view nameOf(MeshFormat format);

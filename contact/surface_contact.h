@@ -31,7 +31,7 @@ using PatchCacheHandle = std::unique_ptr<PatchCache, DeletePatchCache>;
 // Room for `cells` > 0 patches, rounded up to a power of two, about half a kilobyte each. A finger needs some dozens.
 PatchCacheHandle makePatchCache(int cells = 1024);
 
-constexpr int kMaxSurfaceContacts = 3;
+constexpr int kMaxSurfaceContacts = 3;  // the main one and two: three planes hold a ball in a corner
 
 struct SurfaceContact {
   Vec3 p_BS, n_B;

@@ -27,7 +27,7 @@ class TripleBuffer {
   const Value& current() const { return places_[reading_]; }
 
  private:
-  static constexpr unsigned kPlace = 3, kFresh = 4;
+  static constexpr unsigned kPlace = 3, kFresh = 4;  // bits of latest_: the place, 0 to 2; not yet read
   std::array<Value, 3> places_;
   unsigned writing_ = 0, reading_ = 1;
   std::atomic<unsigned> latest_{2};

@@ -140,7 +140,7 @@ struct JointGroup {
 constexpr int kMostGroupFreedoms = 48;  // of the bodies of a group that something can touch, without their joints
 constexpr int kMostJointRows = 7;       // of one joint: a weld's six, a pivot's five and its damper
 
-constexpr int kMostContacts = 65536;
+constexpr int kMostContacts = 65536;  // chosen: bounds the memory of a tick
 
 // How the frictions of two bodies make that of the pair.
 enum class Combination : std::uint8_t {

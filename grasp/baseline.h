@@ -29,6 +29,7 @@ namespace pincer::grasp {
 
 // How contact with a finger is worked out: ours, or as published.
 enum class FingerMethod : unsigned char { kProxy, kGodObject, kForceShading, kPenalty, kFrictionCone };
+// As scenes and the command line name them, in the order of the enumeration.
 inline constexpr std::array<std::string_view, 5> kFingerMethodNames = {"proxy", "god_object", "force_shading",
                                                                        "penalty", "friction_cone"};
 

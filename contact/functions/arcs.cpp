@@ -14,6 +14,7 @@
 namespace pincer::math {
 namespace {
 
+// The answer of asin and acos beyond +-1.
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr int kParts = 32, kFirst = 7;  // from 7/32 on by the table
 
@@ -32,6 +33,7 @@ constexpr auto kArcs = [] {
   return arcs;
 }();
 
+// Terms after the first, of ratios up to 13/64 and of t up to 1/64: the next would be below 2^-64 and 2^-63 of it.
 constexpr double kSeries[] = {-1.0 / 3,  1.0 / 5,  -1.0 / 7,  1.0 / 9,  -1.0 / 11, 1.0 / 13,
                               -1.0 / 15, 1.0 / 17, -1.0 / 19, 1.0 / 21, -1.0 / 23, 1.0 / 25};
 constexpr double kShortSeries[] = {-1.0 / 3, 1.0 / 5, -1.0 / 7, 1.0 / 9};
@@ -90,6 +92,7 @@ double atan(double x) {
 double atan2(double y, double x) {
   if (x != x || y != y) return x + y;
   const double rise = magnitude(y), run = magnitude(x);
+  // An infinite side has no significand: alongAxis answers for it.
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   if (rise == 0 || run == 0 || rise == kInfinite || run == kInfinite) return alongAxis(y, x);
   const Significand a = significandOf(rise), b = significandOf(run);

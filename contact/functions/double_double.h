@@ -30,7 +30,7 @@ constexpr DoubleDouble exactSum(double a, double b) {
 
 // a b without error, by halves of 26 bits: |a|, |b| < 2^995, |a b| > 2^-968.
 constexpr DoubleDouble exactProduct(double a, double b) {
-  constexpr double kHalves = 0x1p27 + 1;
+  constexpr double kHalves = 0x1p27 + 1;  // splits 53 bits in two by rounding (Veltkamp)
   const double ca = kHalves * a, cb = kHalves * b;
   const double a1 = ca - (ca - a), a2 = a - a1, b1 = cb - (cb - b), b2 = b - b1;
   const double p = a * b;

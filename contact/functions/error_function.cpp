@@ -16,9 +16,10 @@
 namespace pincer::math {
 namespace {
 
+// 2/sqrt(pi), to twice the digits: w is the difference of two sums that nearly cancel.
 constexpr DoubleDouble kTwoOverRootPi{0x1.20dd750429b6dp+0, 0x1.1ae3a914fed8p-56};
 constexpr int kPerUnit = 8, kFirst = 2, kLast = 32;  // nodes at 2/8 .. 32/8
-constexpr std::size_t kOrder = 15;
+constexpr std::size_t kOrder = 15;                   // terms: |h| <= 1/16, whose 15th power is 2^-60
 
 struct Node {
   double low = 0;  // of a_0
@@ -36,6 +37,7 @@ constexpr DoubleDouble scaledComplement(double c) {
   return sum - kTwoOverRootPi * odd_sum;
 }
 
+// Taylor coefficients of w about each node, worked out by the compiler.
 constexpr auto kNodes = [] {
   std::array<Node, kLast - kFirst + 1> nodes{};
   for (int j = kFirst; j <= kLast; ++j) {

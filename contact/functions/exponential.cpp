@@ -37,6 +37,7 @@ struct Parts {
   int power;      // of 2
 };
 
+// 1/n!, n from 2: of |r| <= ln 2 / 128 the next term is below 2^-64.
 constexpr double kSeries[] = {1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720};
 
 Parts partsOf(int k, double r) {
@@ -51,6 +52,7 @@ Parts partsOf(const DoubleDouble& x) {
 
 double valueOf(const Parts& parts) { return scaled(parts.root.hi + parts.beyond, parts.power); }
 
+// 1/n!, n from 2: of |x| < 1/8 the next term is below 2^-61 of x.
 constexpr double kInverseFactorials[] = {1.0 / 2,    1.0 / 6,     1.0 / 24,     1.0 / 120,     1.0 / 720,
                                          1.0 / 5040, 1.0 / 40320, 1.0 / 362880, 1.0 / 3628800, 1.0 / 39916800};
 

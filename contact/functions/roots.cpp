@@ -8,6 +8,7 @@
 namespace pincer::math {
 
 double hypot(double x, double y) {
+  // Infinite even where the other is no number (IEEE 754).
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   const double a = magnitude(x), b = magnitude(y);
   if (a == kInfinite || b == kInfinite) return kInfinite;

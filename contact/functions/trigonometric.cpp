@@ -16,10 +16,11 @@ namespace {
 __extension__ typedef unsigned __int128 Uint128;
 __extension__ typedef __int128 Int128;
 
+// 2/pi; pi/2 in parts of which the first three have at most 33 bits; pi/4, up to which nothing is reduced [rad].
 constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
 constexpr double kHalfPiParts[] = {0x1.921fb544p+0, 0x1.0b4611a6p-34, 0x1.3198a2ep-69, 0x1.b839a252049c1p-104};
-constexpr double kMostByParts = 0x1p20;  // k of 20 bits times 33 bits: exact
-constexpr double kQuarterPi = 0x1.921fb54442d18p-1;
+constexpr double kMostByParts = 0x1p20;              // k of 20 bits times 33 bits: exact
+constexpr double kQuarterPi = 0x1.921fb54442d18p-1;  // [rad]: up to here nothing is reduced
 
 // Angles below are their own sine to half an ulp.
 constexpr double kTiny = 0x1p-27;
@@ -91,6 +92,7 @@ Reduced reduced(double x) {
   return isNegative(x) ? Reduced{-angle.r, -angle.quadrant} : angle;
 }
 
+// Of |r| <= pi/4 the next terms are below 2^-62 of the sine and 2^-58 of the cosine.
 constexpr double kSine[] = {-1.0 / 6,
                             1.0 / 120,
                             -1.0 / 5040,
@@ -116,12 +118,14 @@ double cosineOf(const DoubleDouble& r) { return cosineFrom(polynomial(kCosine, r
 
 // Both series side by side; the cosine's ends with a term of 0, which changes no bit.
 using Both [[gnu::vector_size(16)]] = double;
+// Terms of equal order, sine first: one instruction for both.
 constexpr Both kBoth[] = {{kSine[0], kCosine[0]}, {kSine[1], kCosine[1]}, {kSine[2], kCosine[2]},
                           {kSine[3], kCosine[3]}, {kSine[4], kCosine[4]}, {kSine[5], kCosine[5]},
                           {kSine[6], kCosine[6]}, {kSine[7], 0}};
 
 // Sine and cosine to 2^-57, for quotients of them: here the series begins where the exact cube ends.
 DoubleDouble preciseSine(const DoubleDouble& r) {
+  // 1/3! to twice the digits: a double would cost the bits that the exact cube keeps.
   constexpr DoubleDouble kSixth = DoubleDouble{1} / DoubleDouble{6};
   const double z = r.hi * r.hi;
   const DoubleDouble cubic = -r.hi * (exactProduct(r.hi, r.hi) * kSixth), sum = sumOfOrdered(r.hi, cubic.hi);

@@ -23,7 +23,7 @@ struct InputKind {
   std::string_view remedy;  // where it is too large: a sentence
 };
 
-constexpr std::size_t kMegabyte = std::size_t{1} << 20;
+constexpr std::size_t kMegabyte = std::size_t{1} << 20;  // [bytes]
 
 // The longest line of a table [bytes]: 500 columns of 130 characters; without a
 // bound a file without line ends would be one.

@@ -84,7 +84,7 @@ std::string printable(std::string_view text, std::size_t most) {
 }
 
 std::string printableMessage(std::string_view text) {
-  constexpr std::size_t kHalf = kLongestMessage / 2;
+  constexpr std::size_t kHalf = kLongestMessage / 2;  // characters of the begin, and of the end
   if (text.size() <= 4 * kLongestMessage) {
     const Shown all(text, true);
     if (all.count() <= kLongestMessage) return std::string(all.all());

@@ -328,6 +328,7 @@ TriangleMesh grooveBlock(double half_angle, double depth, double half_width, dou
     const int k = (i + 1) % 7;
     build.quad(i, 7 + i, 7 + k, k);
   }
+  // Triangles of an end by points of the outline; it is hollow at point 4, so no triangle spans the groove.
   constexpr std::array<std::array<int, 3>, 5> kEnd = {{{0, 4, 6}, {4, 5, 6}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}}};
   for (const auto& [a, b, c] : kEnd) {
     build.triangle(a, b, c);

@@ -12,6 +12,7 @@ namespace pincer::contact {
 
 namespace {
 
+// The remedy for faces without area.
 constexpr const char* kDelete = "Delete degenerate faces in a mesh editor and export again.";
 constexpr std::size_t kEnoughTriangles = 50'000;  // for a finger: facets of 1 mm on a hand-sized object
 

@@ -14,10 +14,11 @@
 
 namespace pincer::contact {
 
-constexpr std::size_t kMaxTriangles = 2'000'000;
+constexpr std::size_t kMaxTriangles = 2'000'000;         // chosen: 40 times what a finger feels
 constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;  // as in files that share none; also of normals
 constexpr std::size_t kMaxCorners = 1000;                // of one polygon: ear clipping is quadratic
-constexpr double kMaxCoordinate = 1000;                  // [m]
+constexpr double kMaxCoordinate = 1000;                  // [m], chosen: finds a wrong unit
+// The remedy where a face names a vertex that the file lacks.
 constexpr const char* kCutOffOrJoined = "The file is cut off or was joined by hand; export it again.";
 
 class MeshBuilder {

@@ -10,7 +10,7 @@
 
 namespace pincer::contact {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; some editors begin texts with it
 
 // How a message counts places: in lines from 1, or in bytes from 0.
 enum class Places : std::uint8_t { lines, bytes };

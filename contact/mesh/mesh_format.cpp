@@ -16,6 +16,7 @@ namespace pincer::contact {
 
 namespace {
 
+// In the order of the enumeration, as kNames below.
 constexpr std::array kFormats = {MeshFormat::obj, MeshFormat::stl, MeshFormat::ply, MeshFormat::off};
 
 std::string lowerCase(std::string_view word) {
@@ -27,8 +28,8 @@ std::string lowerCase(std::string_view word) {
 
 // The first word that isn't in a comment.
 std::string_view firstWord(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t\r\n\v\f";
-  constexpr std::size_t kFar = std::size_t{1} << 20;  // of comments; behind them the name decides
+  constexpr std::string_view kBlanks = " \t\r\n\v\f";  // as std::isspace has them
+  constexpr std::size_t kFar = std::size_t{1} << 20;   // of comments; behind them the name decides
   text = text.substr(0, kFar);
   for (std::size_t begin = text.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
     if (text[begin] != '#') return text.substr(begin, text.find_first_of(kBlanks, begin) - begin);
@@ -42,6 +43,7 @@ std::string_view firstWord(std::string_view text) {
 }  // namespace
 
 std::string_view nameOf(MeshFormat format) {
+  // In the order of MeshFormat.
   constexpr std::array<std::string_view, kFormats.size()> kNames = {"OBJ", "STL", "PLY", "OFF"};
   return kNames[static_cast<std::size_t>(format)];
 }

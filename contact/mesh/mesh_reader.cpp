@@ -58,7 +58,7 @@ TriangleMesh parseMesh(std::string_view bytes, MeshFormat format, const std::str
                                  kMaxMeshBytes / kMegabyte));
   }
   MeshFile file(bytes, name, options.progress);
-  constexpr std::array kReaders = {readObj, readStl, readPly, readOff};
+  constexpr std::array kReaders = {readObj, readStl, readPly, readOff};  // in the order of MeshFormat
   TriangleMesh mesh = kReaders[static_cast<std::size_t>(format)](file, options);
   if (options.progress) options.progress(1);
   return mesh;

@@ -10,6 +10,7 @@ namespace pincer::contact {
 
 namespace {
 
+// The finding about an empty mesh, with its remedy.
 constexpr const char* kNoTriangle = "the mesh has no triangle; there is nothing to touch. Export it again.";
 
 using Triangle = std::array<std::int32_t, 3>;

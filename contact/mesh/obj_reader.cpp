@@ -84,6 +84,7 @@ void ObjParser::readVertex() {
         fmt::format("vertex {} has {} numbers; it needs 3 (x y z), and may have a weight and a colour (4, 6 or 7).",
                     builder_.nextVertex(), values));
   }
+  // For messages: a vertex may have up to four values more, of weight or colour.
   constexpr std::array<std::string_view, 7> kNames = {"x", "y", "z", "value 4", "value 5", "value 6", "value 7"};
   std::array<double, 7> value{};
   for (std::size_t i = 0; i < values; ++i) value[i] = lines_.number(words[i + 1], kNames[i]);

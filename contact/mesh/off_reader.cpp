@@ -97,6 +97,7 @@ void OffParser::readCounts(std::size_t first_word) {
     lines_.fail(fmt::format("the header has {} counts; it needs 3: vertices, faces and edges (0 if unknown).",
                             words.size() - first_word));
   }
+  // For messages, in the order of the file.
   constexpr std::array<std::string_view, 3> kNames = {"number of vertices", "number of faces", "number of edges"};
   std::array<std::size_t, 3> count{};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kMaxLines = 1000;  // of elements and properties: real files have some ten
 
 PlyType typeOf(std::string_view word, const TextLines& lines) {
+  // Both spellings of each type, in the order of PlyType.
   constexpr std::array<std::string_view, 8> kC = {"char", "uchar", "short", "ushort", "int", "uint", "float", "double"};
   constexpr std::array<std::string_view, 8> kSized = {"int8",  "uint8",  "int16",   "uint16",
                                                       "int32", "uint32", "float32", "float64"};
@@ -22,6 +23,7 @@ PlyType typeOf(std::string_view word, const TextLines& lines) {
 }
 
 void readFormat(TextLines& lines, PlyHeader& header) {
+  // All that the format has.
   constexpr std::array<std::string_view, 3> kNames = {"ascii", "binary_little_endian", "binary_big_endian"};
   const auto& words = lines.words();
   if (words.size() != 3 || words[0] != "format") {

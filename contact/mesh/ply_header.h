@@ -18,7 +18,7 @@ namespace pincer::contact {
 enum class PlyEncoding : std::uint8_t { ascii, little_endian, big_endian };
 enum class PlyType : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-constexpr std::array<std::size_t, 8> kPlyBytes = {1, 1, 2, 2, 4, 4, 4, 8};
+constexpr std::array<std::size_t, 8> kPlyBytes = {1, 1, 2, 2, 4, 4, 4, 8};  // in the order of PlyType [bytes]
 constexpr std::size_t sizeOf(PlyType type) { return kPlyBytes[static_cast<std::size_t>(type)]; }
 constexpr bool isInteger(PlyType type) { return type < PlyType::float32; }
 

@@ -13,6 +13,7 @@ namespace pincer::contact {
 
 namespace {
 
+// The remedy for a file that ends too early.
 constexpr const char* kCutOff = "The file is cut off; export or copy it again.";
 
 // Where an element's next value stands and how it is written: words of a line, or bytes. Both have the same members.
@@ -134,6 +135,7 @@ struct VertexLayout {
 };
 
 VertexLayout layoutOf(const PlyElement& element, const MeshFile& file) {
+  // Of the properties that are read.
   constexpr std::array<std::string_view, 6> kNames = {"x", "y", "z", "nx", "ny", "nz"};
   VertexLayout layout;
   std::array<bool, 6> found{};
@@ -245,7 +247,7 @@ class PlyParser {
   // Each vertex makes a triangle with the two before it, every second one turned round. -1 ends a strip; another begins
   // in the same list. Strips are joined by triangles that name a vertex twice: these aren't part of the surface.
   void readStrip(const PlyProperty& p) {
-    constexpr std::int64_t kEnd = -1;
+    constexpr std::int64_t kEnd = -1;  // in place of a vertex: ends a strip
     const std::int32_t place = values_.place();
     const std::int64_t items = values_.count(p);
     requireNotNegative(items, p, place);

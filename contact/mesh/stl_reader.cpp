@@ -121,7 +121,7 @@ std::size_t StlParser::readCount() const {
 }
 
 void StlParser::readBinaryCorner(std::size_t at) {
-  constexpr std::array<char, 3> kNames = {'x', 'y', 'z'};
+  constexpr std::array<char, 3> kNames = {'x', 'y', 'z'};  // for messages
   Vec3 p;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto value = readNumber<float>(file_.bytes().substr(at + 4 * i), ByteOrder::little);

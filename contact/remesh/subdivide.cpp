@@ -25,6 +25,7 @@ class Subdivision {
 
  private:
   void split(std::size_t t) {
+    // 0, 1, 2 corners; 3, 4, 5 middles of the edges 0-1, 1-2, 2-0.
     constexpr std::array<std::array<std::size_t, 3>, 4> kParts = {{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
     const Patch patch = surface_.patch(static_cast<std::int32_t>(t));
     const auto& corners = mesh_.triangles[t];

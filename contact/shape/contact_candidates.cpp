@@ -11,7 +11,7 @@ namespace {
 
 // The kept points of one group, and the sides of their outline seen along the first one's normal.
 struct Group {
-  static constexpr int kMost = 4;
+  static constexpr int kMost = 4;  // points, as point_choice.h keeps of a face
   struct Side {
     Vec3 right, from;
   };

@@ -24,6 +24,7 @@ struct FoundPoints {
 
 class ContactCandidates {
  public:
+  // Chosen: up to eight of them are kept, and add() compares with all.
   static constexpr int kMost = 256;
 
   // Of equal features the one with the smaller gap or depth stays: the nearest surface is the one that a point may

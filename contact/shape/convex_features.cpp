@@ -297,6 +297,7 @@ void strata(const Convex& c, const Vec3& d, Strata& s) {
 
 template <class Solid>
 constexpr bool kConvex =
+    // The rest has features.
     !std::is_same_v<Solid, HalfSpace> && !std::is_same_v<Solid, Dish> && !std::is_same_v<Solid, Mesh>;
 
 // Calls f on the solid that `shape` is; a default result where that isn't convex.

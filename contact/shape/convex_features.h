@@ -25,7 +25,7 @@
 
 namespace pincer::contact {
 
-constexpr int kRimCorners = 16;
+constexpr int kRimCorners = 16;  // chords run up to 2 % of the radius inside of the rim; kCos, kSin go with it
 
 struct FacetCorner {
   Vec3 p;                // [m]
@@ -34,7 +34,7 @@ struct FacetCorner {
 };
 
 struct Facet {
-  static constexpr int kMost = 40;
+  static constexpr int kMost = 40;         // chosen: above a cut cylinder's 18; of more corners every n-th counts
   static constexpr int kFlatEdge = 17;     // of the end of a cylinder with a flat
   std::array<FacetCorner, kMost> corners;  // counter-clockwise seen from outside
   int count = 0;
@@ -55,7 +55,7 @@ struct Facet {
 };
 
 struct Strata {
-  static constexpr int kMost = 8;
+  static constexpr int kMost = 8;          // chosen: a box has 3; beyond, those of a hull's corner are left out
   std::array<Vec3, kMost> normals, edges;  // unit
   int normal_count = 0, edge_count = 0;
   bool with_edges = true;  // set before: false leaves out those of hulls, which cost a root each

@@ -20,7 +20,7 @@ struct Direction {
 // `choice` may be an expression; it is made only where it is needed.
 template <class Vector, class Choice>
 [[gnu::always_inline]] inline Direction<Vector> directionOf(const Vector& v, const Choice& choice) {
-  constexpr double kShortest = 1e-100;
+  constexpr double kShortest = 1e-100;  // in the unit of v, see above
   const double length = std::sqrt(v.squaredNorm());
   if (length < kShortest) return {Vector(choice), 0};
   return {v / length, length};

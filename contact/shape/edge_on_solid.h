@@ -21,7 +21,7 @@ struct EdgeContact {
   double gap;  // of the solid's core and the edge [m]
 };
 struct EdgeContacts {
-  static constexpr int kMost = 8;
+  static constexpr int kMost = 8;  // chosen: a box seen along an edge has up to 6 sides; further ones are left out
   std::array<EdgeContact, kMost> all;
   int count = 0;
 };

@@ -36,7 +36,7 @@ struct ExtremePoints {
 
 // Where the points of the primitives are written; a mesh brings its own.
 struct ExtremePointStore {
-  static constexpr int kMost = 12;
+  static constexpr int kMost = 12;  // a cylinder with a flat: four of each rim, four of the flat
   std::array<Vec3, kMost> points;
   std::array<std::uint32_t, kMost> features;
   int count = 0;

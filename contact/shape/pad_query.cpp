@@ -57,8 +57,8 @@ class WallLine {
 
   // How far the wall goes on that way [m]. A line along an edge is looked for just inside of its triangle.
   double follow(std::int32_t t, double sign) const {
-    constexpr int kMostTriangles = 64;
-    constexpr double kInside = 1e-3;  // of the triangle's width
+    constexpr int kMostTriangles = 64;  // chosen: bounds the work; a wall of more ends there
+    constexpr double kInside = 1e-3;    // of the triangle's width
     double low = seen(net_.vertex(t, 0)).y(), high = low;
     for (int i = 1; i < 3; ++i) {
       low = std::min(low, seen(net_.vertex(t, i)).y());

@@ -18,7 +18,7 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();  // [m]: no ball holds a half-space or dish
 
 double radiusOf(const Sphere& s) { return s.radius; }
 double radiusOf(const Box& b) { return b.half.norm(); }

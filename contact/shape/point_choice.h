@@ -29,7 +29,7 @@
 
 namespace pincer::contact {
 
-constexpr int kMaxChosen = 4;
+constexpr int kMaxChosen = 4;  // more bring no rest, but cost the solver, see above
 
 struct Chosen {
   int index;   // of the extreme point
@@ -49,7 +49,7 @@ class PointChoice {
   const Chosen& operator[](int i) const { return chosen_[i]; }  // by ascending index
 
  private:
-  static constexpr int kListed = 256;
+  static constexpr int kListed = 256;  // chosen; more points are found again by each scan
 
   // From a chosen point to another, none to the right of it; two points have two edges, there and back.
   struct Edge {
@@ -58,7 +58,7 @@ class PointChoice {
 
     double distance(const Vec3& p) const { return right_A.dot(p) - offset; }  // [m]
   };
-  static constexpr int kMaxEdges = (kMaxChosen - 1) * (kMaxChosen - 2);
+  static constexpr int kMaxEdges = (kMaxChosen - 1) * (kMaxChosen - 2);  // between all but the last, there and back
 
   double gapOf(int i) const { return support_.gap(solid_.points[i]) - solid_.rounding; }
   int candidates() const { return static_cast<int>(solid_.points.size()); }

@@ -51,8 +51,8 @@ class AabbTree {
     std::int32_t left;   // >= 0: the children are left and left + 1; < 0: a leaf, items begin at place -1 - left
     std::int32_t count;  // of items in a leaf
   };
-  static constexpr std::int32_t kLeafSize = 12;
-  static constexpr std::size_t kMaxDepth = 64;
+  static constexpr std::int32_t kLeafSize = 12;  // items, chosen
+  static constexpr std::size_t kMaxDepth = 64;   // nodes put off, one per level; 2^31 items have 31 levels
 
   static Vec3 cornerOf(const std::array<float, 3>& c) { return {c[0], c[1], c[2]}; }
   static double squaredDistance(const Node& node, const Vec3& p) {

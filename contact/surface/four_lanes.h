@@ -11,7 +11,7 @@
 
 namespace pincer::contact {
 
-constexpr int kLanes = 4;
+constexpr int kLanes = 4;                              // numbers of single precision in 16 bytes
 using Lanes = float __attribute__((vector_size(16)));  // one instruction for all four
 using LaneMask = std::int32_t __attribute__((vector_size(16)));
 
@@ -20,7 +20,7 @@ inline Lanes greaterOf(Lanes a, Lanes b) { return a > b ? a : b; }
 
 // A point that lanes are compared with.
 struct LanesPoint {
-  static constexpr float kShare = 1e-6f;
+  static constexpr float kShare = 1e-6f;  // of a square [-]: eight epsilons of single precision
 
   explicit LanesPoint(const Vec3& p) : x{toLanes(p[0]), toLanes(p[1]), toLanes(p[2])} {}
   static Lanes toLanes(double x) { return inAllLanes(static_cast<float>(x)); }

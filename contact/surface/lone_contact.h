@@ -25,7 +25,7 @@ struct PatchBounds;
 class LoneContact {
  public:
   static constexpr double kCosBeta = 0.8660254037844387, kSinBeta = 0.5, kTanBeta = kSinBeta / kCosBeta;  // 30 degrees
-  static constexpr double kFits = 0.6;
+  static constexpr double kFits = 0.6;  // [-]: 0.6 / cos^3 beta = 0.92 < 1
 
   // `most` [m]: no longer way is asked for; it should be less than h. `rounding` is what
   // single precision may move a distance by [m].

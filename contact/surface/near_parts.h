@@ -29,9 +29,9 @@
 namespace pincer::contact {
 
 constexpr double kApart = 0.998;  // cosine of 3.6 degrees: two contacts differ by more in their normals
-constexpr double kHalfApart = ConesAlong::kHalfApart;
-constexpr double kLookHorizon = 1.0 / 8;  // the way for which a look holds, of its reach
-constexpr std::size_t kMostParts = 512;   // of a list; a full one keeps its nearer half
+constexpr double kHalfApart = ConesAlong::kHalfApart;  // the cosine of half that angle
+constexpr double kLookHorizon = 1.0 / 8;               // the way for which a look holds, of its reach
+constexpr std::size_t kMostParts = 512;                // of a list; a full one keeps its nearer half
 
 struct NearPart {
   std::int32_t place;  // in the search's order

@@ -54,7 +54,7 @@ class ConeFinder {
   bool hasBorder() const { return has_border_; }  // among what was looked at
 
  private:
-  static constexpr char kSmooth = 0, kSharp = 1, kBorder = 2;
+  static constexpr char kSmooth = 0, kSharp = 1, kBorder = 2;  // kinds of vertices; a border counts first
 
   char& kindAt(std::int32_t t, int corner) {
     return kind_[static_cast<std::size_t>(
@@ -142,7 +142,7 @@ SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector,
   is_closed_ = !cones.hasBorder();
   constexpr double kFlat = 1e-9;  // of the mesh's size
   if (bulge_ < kFlat * net.length()) bulge_ = 0;
-  constexpr float kNowhere = std::numeric_limits<float>::infinity();
+  constexpr float kNowhere = std::numeric_limits<float>::infinity();  // [m]: no bound reaches it
   const PatchBounds none{{kNowhere, kNowhere, kNowhere}, 0, 0, 0, FacingTest(NormalCone{})};
   const auto& order = tree_.order();
   groups_.resize((order.size() + kLanes - 1) / kLanes);

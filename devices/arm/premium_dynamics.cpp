@@ -11,6 +11,7 @@ namespace {
 struct Segment {
   double mass, xx, yy, zz;
 };
+// Mass [kg], moments about x, y and z [kg m^2].
 constexpr Segment kA{0.0202, 0.4864e-4, 0.001843e-4, 0.4864e-4};
 constexpr Segment kC{0.0249, 0.959e-4, 0.959e-4, 0.0051e-4};
 constexpr Segment kBE{0.2359, 11.09e-4, 10.06e-4, 0.591e-4};

@@ -31,7 +31,7 @@ struct NearestPoint {
   double distance = 0;          // from the fingertip's surface [m]
 };
 
-inline constexpr int kMaxPadContacts = 4;
+inline constexpr int kMaxPadContacts = 4;  // chosen; a tick gives one
 
 struct PadInput {
   bool parked = false;

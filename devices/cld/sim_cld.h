@@ -65,7 +65,7 @@ class SimCld final : public TactileDisplay {
   const TwoDofKinematics& kinematics() const { return kinematics_; }
 
  private:
-  static constexpr double kNotRead = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kNotRead = std::numeric_limits<double>::quiet_NaN();  // [m]: differs from every first reading
 
   void tick();
   Vec2 waysTo(const Vec2& place_L) const;

@@ -11,8 +11,8 @@
 namespace pincer::devices {
 namespace {
 
-constexpr double kRollerTick = 1e-3;  // of the firmware [s]
-constexpr const char* kRollerName = "simulated 1-DOF CLD";
+constexpr double kRollerTick = 1e-3;                        // of the firmware [s]
+constexpr const char* kRollerName = "simulated 1-DOF CLD";  // in messages and logs
 
 void checkRoller(const SimOneDofCldSettings& s) {
   const auto require = [](bool ok, const char* field, double value, const char* range) {

@@ -17,7 +17,7 @@
 
 namespace pincer::devices {
 
-inline constexpr int kMaxDelayCells = 512;
+inline constexpr int kMaxDelayCells = 512;  // chosen: half a second in cells of 1 ms
 
 struct VirtualTransmission {
   double backlash = 0;  // b [m], 0 .. 0.05

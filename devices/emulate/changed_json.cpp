@@ -6,6 +6,7 @@
 namespace pincer::devices::emulate {
 
 std::string changedJson(std::string text, std::size_t most, std::mt19937_64& random) {
+  // Pieces that matter to a reader: structure, a number beyond doubles, NUL, half a character.
   constexpr std::array<std::string_view, 17> kPieces{"{",       "}",   "[",     "]",       "\"",  ",",
                                                      "9",       "e99", "null",  "true",    ":1,", "\\u0000",
                                                      "\\u00e9", "-",   "1e400", "\\ud800", "\xff"};

@@ -5,6 +5,7 @@
 namespace pincer::devices::emulate {
 namespace {
 
+// In the order of HaplyFault.
 constexpr std::array<std::string_view, kHaplyFaults> kNames{"none",
                                                             "no JSON",
                                                             "no UTF-8",

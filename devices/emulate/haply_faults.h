@@ -59,6 +59,7 @@ enum class HaplyFault : std::uint8_t {
   kCount
 };
 
+// How many there are, kNone with them.
 inline constexpr auto kHaplyFaults = static_cast<std::size_t>(HaplyFault::kCount);
 std::string_view nameOf(HaplyFault fault);  // "not a number"
 // True where a sound driver goes on: nothing is wrong with what is told.

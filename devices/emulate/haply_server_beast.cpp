@@ -46,7 +46,7 @@ std::string frameOf(std::string_view text) {
 
 // The header and what follows it byte by byte; all of it would take longer than a session waits.
 void writeInPieces(tcp::socket& socket, const std::string& frame) {
-  constexpr std::size_t kSingly = 40;
+  constexpr std::size_t kSingly = 40;  // [bytes], chosen: the header and some of the text
   const std::size_t singly = std::min(frame.size(), kSingly);
   for (std::size_t i = 0; i < singly; ++i) boost::asio::write(socket, boost::asio::buffer(&frame[i], 1));
   boost::asio::write(socket, boost::asio::buffer(frame.data() + singly, frame.size() - singly));

@@ -23,6 +23,7 @@ void add(std::string& text, const Quat& q) {
 
 const char* truth(bool value) { return value ? "true" : "false"; }
 
+// Fields that a driver must read over: no joint is turned, nor the body.
 constexpr const char* kAngles = R"({"a0":0,"a1":0,"a2":0})";
 constexpr const char* kUpright = R"({"w":1,"x":0,"y":0,"z":0})";
 

@@ -11,6 +11,8 @@ namespace {
 
 // FTDI's vendor requests, and their values as libnifalcon uses them.
 enum FtdiRequest : std::uint8_t { kReset = 0, kModem = 1, kFlow = 2, kBaud = 3, kData = 4, kLatency = 9 };
+// Values of the requests. Baud rates are divisors of 3 MHz, 0x4000 adds a half: 312.5, 21 and 2. The high byte of a
+// modem line tells which it is.
 constexpr std::uint16_t kPurgeIn = 1, kPurgeOut = 2;
 constexpr std::uint16_t kBaud9600 = 0x4138, kBaud140000 = 0x15, kBaudNormal = 0x2;
 constexpr std::uint16_t kEightBits = 8, kNoFlow = 0, kRtsLow = 0x200, kDtrLow = 0x100, kDtrHigh = 0x101;
@@ -20,6 +22,7 @@ constexpr int kStatus = 2;          // bytes of the chip's before each packet
 constexpr int kEmptyPackets = 40;   // without a word: at its latency of 16 ms 0.6 s
 constexpr int kAnswerPackets = 8;   // in which an answer comes
 constexpr int kGreetings = 8;       // tried at most
+// The loader is ready once it answers "\nC\r" by "\nD,\r".
 constexpr std::array<std::uint8_t, 3> kHello{0x0a, 0x43, 0x0d};
 constexpr std::array<std::uint8_t, 4> kHelloBack{0x0a, 0x44, 0x2c, 0x0d};
 constexpr double kCountsPerTorque = 10000;  // [1/(N m)], libnifalcon's
@@ -81,6 +84,7 @@ bool FalconSession::enterLoader() {
   if (!set) return false;
   bool greeted = false;
   for (int i = 0; i < kGreetings && !greeted; ++i) greeted = port_.write(kHello) && hears(kHelloBack);
+  // "A", which comes back at the faster rate.
   constexpr std::array<std::uint8_t, 1> kLetter{0x41};
   return greeted && port_.control(kModem, kDtrLow) && port_.control(kBaud, kBaud140000) && port_.write(kLetter) &&
          hears(kLetter);

@@ -7,7 +7,7 @@
 namespace pincer::devices::falcon {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kPi = std::numbers::pi;  // half a turn [rad]
 // of the legs, about the base's axis [rad]
 constexpr std::array<double, 3> kLegAngles{kPi / 2 + kPi / 12, -kPi / 6 + kPi / 12, -5 * kPi / 6 + kPi / 12};
 constexpr double kOffset = 35 * kPi / 180;                             // [rad]

@@ -5,8 +5,8 @@
 namespace pincer::devices::falcon {
 namespace {
 
-constexpr std::size_t kStatusBytes = 2;
-constexpr int kMostTorque = 4096;  // counts: 12 bits and their sign
+constexpr std::size_t kStatusBytes = 2;  // of the FTDI chip, before each packet's text
+constexpr int kMostTorque = 4096;        // counts: 12 bits and their sign
 
 }  // namespace
 

@@ -11,6 +11,7 @@
 namespace pincer::devices::falcon {
 namespace {
 
+// USB numbers and endpoints of the FTDI chip in a Falcon.
 constexpr std::uint16_t kFtdiVendor = 0x0403, kFalconProduct = 0xcb48;
 constexpr std::uint8_t kFalconOut = 0x02, kFalconIn = 0x81;
 constexpr unsigned kPortTimeout = 1000;  // [ms]

@@ -87,6 +87,7 @@ struct TripWords {
   const char* remedy;
 };
 
+// For trips that a busy computer causes.
 constexpr const char* kBusyRemedy =
     "close other programs, permit real-time priority (docs/devices/setup.md), or allow longer stalls with --watchdog; "
     "then arm again.";

@@ -9,6 +9,7 @@ namespace pincer::devices::haply {
 namespace {
 
 EventLevel levelOf(std::string_view name) {
+  // In the order of EventLevel, mildest first.
   constexpr std::array<std::string_view, 6> kNames{"info", "notice", "warning", "error", "critical", "panic"};
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   return found == kNames.end() ? EventLevel::kError : static_cast<EventLevel>(found - kNames.begin());

@@ -18,7 +18,7 @@
 
 namespace pincer::devices::haply {
 
-inline constexpr std::size_t kMostDevices = 16;
+inline constexpr std::size_t kMostDevices = 16;     // chosen; a message with more is refused
 inline constexpr std::size_t kMostMessage = 65536;  // that is read [bytes]
 inline constexpr std::size_t kMostCommand = 1024;   // that is written [bytes]
 inline constexpr double kFarthest = 2;              // a place further from the device's origin isn't one [m]

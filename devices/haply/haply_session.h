@@ -20,7 +20,7 @@
 
 namespace pincer::devices::haply {
 
-inline constexpr std::size_t kMostArms = 2;
+inline constexpr std::size_t kMostArms = 2;                    // chosen; a session with more is refused
 inline constexpr std::int64_t kMillisecond = 1'000'000;        // [ns]
 inline constexpr std::int64_t kSendPeriod = kMillisecond / 2;  // twice per tick
 inline constexpr std::size_t kMostUnderWay = 8;                // messages without their answer

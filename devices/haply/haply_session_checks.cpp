@@ -18,6 +18,7 @@ constexpr double kEchoOver = 0.2, kEchoOverShare = 0.05;   // the echo may be ab
 constexpr double kAttenuated = 0.8;                        // an echo below this share of what was sent is counted
 constexpr std::int64_t kConfigureMayLast = 500 * kMillisecond;  // until the arm's settings are those asked for
 
+// Names of events that put a session in doubt: safety, and a lost device.
 constexpr std::array<std::string_view, 4> kSafetyTypes{"ebrake_triggered", "stall_detected", "stability_ceiling",
                                                        "fod_stage_changed"};
 constexpr std::array<std::string_view, 4> kLosses{"device-disconnected", "device-busy", "device-calibration-failed",

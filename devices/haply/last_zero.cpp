@@ -12,6 +12,7 @@
 namespace pincer::devices::haply {
 namespace {
 
+// Signals that end the program with a force still commanded.
 constexpr std::array kDeadly{SIGSEGV, SIGBUS, SIGFPE, SIGABRT};
 constexpr std::size_t kHeader = 8;      // at most: text, final, masked; length; a mask of zeros
 constexpr std::size_t kShortest = 126;  // length that needs 16 bits; a shorter one may not have them (RFC 6455, 5.2)

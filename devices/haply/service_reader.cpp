@@ -8,6 +8,7 @@
 namespace pincer::devices::haply {
 namespace {
 
+// In the order of DeviceFamily.
 constexpr std::array<std::string_view, 3> kFamilies{"inverse3", "verse_grip", "wireless_verse_grip"};
 
 // Slots of what is known of a device: numbers, then flags, then texts.
@@ -42,6 +43,7 @@ struct NumberRow {
   std::size_t slot;
   double most;
 };
+// A number beyond `most`, of either sign, is no reading. The 1000 of gains and scales is chosen.
 constexpr std::array kNumberRows{NumberRow{"state.cursor_position.x", kPlace, kFarthest},
                                  NumberRow{"state.cursor_position.y", kPlace + 1, kFarthest},
                                  NumberRow{"state.cursor_position.z", kPlace + 2, kFarthest},
@@ -63,6 +65,7 @@ struct NameRow {
   std::string_view path;
   std::size_t slot;
 };
+// Paths of all other values that are kept.
 constexpr std::array kFlagRows{NameRow{"status.calibrated", kCalibrated},
                                NameRow{"status.in_use", kInUse},
                                NameRow{"status.power_supply", kPower},

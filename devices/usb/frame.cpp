@@ -7,6 +7,7 @@
 namespace pincer::devices::usb {
 namespace {
 
+// [bytes] from the begin, as frame.h lists them.
 constexpr std::size_t kTypeAt = 3, kSequenceAt = 4, kTimeAt = 8, kPayloadAt = 16, kCrcAt = 62;
 
 bool isFrameType(std::uint8_t type) { return (type >= 0x01 && type <= 0x06) || (type >= 0x81 && type <= 0x87); }
@@ -44,7 +45,7 @@ std::string describe(FrameError error) {
 }
 
 std::uint16_t crc16(std::span<const std::uint8_t> bytes) {
-  static constexpr auto kTable = crcTable();
+  static constexpr auto kTable = crcTable();  // of the steps of eight bits at once
   std::uint16_t crc = 0xffff;
   for (const std::uint8_t byte : bytes) crc = static_cast<std::uint16_t>((crc << 8) ^ kTable[(crc >> 8) ^ byte]);
   return crc;

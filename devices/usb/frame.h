@@ -15,9 +15,9 @@
 
 namespace pincer::devices::usb {
 
-inline constexpr std::size_t kFrameSize = 64;
-inline constexpr std::size_t kPayloadSize = 46;
-inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::size_t kFrameSize = 64;        // [bytes]: one full-speed packet
+inline constexpr std::size_t kPayloadSize = 46;      // [bytes] between the clock and the checksum
+inline constexpr std::uint8_t kProtocolVersion = 1;  // another one is refused
 inline constexpr std::uint16_t kVendorId = 0x1209;   // pid.codes, open source devices
 inline constexpr std::uint16_t kProductId = 0x0001;  // theirs for private testing; a maker registers an own one
 

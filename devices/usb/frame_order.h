@@ -41,7 +41,7 @@ class FrameOrder {
   int refusedInARow() const { return refused_in_a_row_; }
 
  private:
-  static constexpr std::int64_t kWindow = 64;
+  static constexpr std::int64_t kWindow = 64;  // frames: bits of came_
 
   // `back` frames behind the newest.
   FrameVerdict judgeOld(std::int64_t back) {

@@ -32,7 +32,7 @@ class UsbPorts {
   virtual void searched() = 0;
 };
 
-constexpr int kMaxPorts = 16;
+constexpr int kMaxPorts = 16;  // chosen: devices at once
 
 // Its thread lives as long as it does.
 class UsbBus {

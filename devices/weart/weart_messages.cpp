@@ -13,7 +13,7 @@ namespace {
 std::string_view nameOf(HandSide hand) { return hand == HandSide::kRight ? "RIGHT" : "LEFT"; }
 
 std::string_view nameOf(Thimble thimble) {
-  constexpr std::array<std::string_view, 3> kNames{"THUMB", "INDEX", "MIDDLE"};
+  constexpr std::array<std::string_view, 3> kNames{"THUMB", "INDEX", "MIDDLE"};  // in the order of Thimble
   return kNames[static_cast<std::size_t>(thimble)];
 }
 

@@ -22,6 +22,7 @@ namespace pincer::devices::weart {
 enum class HandSide : std::uint8_t { kRight, kLeft };
 enum class Thimble : std::uint8_t { kThumb, kIndex, kMiddle };
 
+// The first and the last message, as the SDK sends them.
 inline constexpr std::string_view kStart = "StartFromClient:SdkLLCPP:2.0.0:TrackType1~";
 inline constexpr std::string_view kStop = "StopFromClient~";
 
@@ -42,7 +43,7 @@ std::optional<MiddlewareStatus> readStatus(std::string_view message);
 // than kMostMessage is left out, and counted.
 class MessageCutter {
  public:
-  static constexpr std::size_t kMostMessage = 16384;
+  static constexpr std::size_t kMostMessage = 16384;  // [bytes], chosen; bounds what is kept of a stream without "~"
   // take(message) for each that has ended, without its '~'.
   template <class Take>
   void add(std::string_view bytes, const Take& take) {

@@ -9,6 +9,7 @@
 namespace pincer::devices {
 namespace {
 
+// Follows every message about EGL.
 constexpr const char* kEglRemedy = " Install Mesa's software drivers: apt-get install libegl-mesa0 libgl1-mesa-dri.";
 
 EGLDisplay surfacelessDisplay() {
@@ -21,6 +22,7 @@ EGLDisplay surfacelessDisplay() {
 }
 
 EGLContext coreContext(EGLDisplay display) {
+  // Keys and values up to EGL_NONE: OpenGL 3.3, core.
   constexpr std::array<EGLint, 7> kWanted = {
       EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
       EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};

@@ -10,7 +10,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+constexpr double kPi = 3.14159265358979323846;  // of volumes of round solids
 
 // A solid by its moments: volume [m^3], centre [m], and the means of (x - c)(x - c)^T over the volume [m^2].
 struct Moments {

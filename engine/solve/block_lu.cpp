@@ -10,6 +10,7 @@
 namespace pincer::engine {
 namespace {
 
+// Numbers of a row, and of a block.
 constexpr int kB = BlockLu::kBlock;
 constexpr int kBB = kB * kB;
 

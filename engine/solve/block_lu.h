@@ -16,8 +16,8 @@ namespace pincer::engine {
 
 class BlockLu {
  public:
-  static constexpr int kBlock = 6;
-  static constexpr int kMaxNodes = 1024;
+  static constexpr int kBlock = 6;        // freedoms of a mover
+  static constexpr int kMaxNodes = 1024;  // chosen: the table of places takes 4 MB then
 
   // Memory for `max_nodes` (at most kMaxNodes are treated), `max_blocks` blocks and
   // `max_products` of blocks in a factorisation.

@@ -10,7 +10,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kStride = kMaxContactRows;
+constexpr int kStride = kMaxContactRows;  // numbers from row to row of a block, however many rows it has
 
 // C = A B over rows x rows.
 void multiplyBlocks(const double* A, const double* B, int rows, double* C) {
@@ -126,6 +126,7 @@ void ContactEquations::setGeneral(int i, const double* E, const double* P) {
 
 // Multiplications of a factorisation, a solution and what an iteration does around them.
 std::int64_t ContactEquations::cost() const {
+  // Multiplications: per contact estimated, per product of two blocks counted.
   constexpr std::int64_t kPerContact = 1000, kPerProduct = BlockLu::kBlock * BlockLu::kBlock * BlockLu::kBlock;
   const std::int64_t m = problem_.rowCount(), contacts = kPerContact * problem_.contactCount();
   return contacts + (form_ == EquationForm::kContacts ? m * m * (m + 24) / 3 : kPerProduct * scratch_.lu.products());

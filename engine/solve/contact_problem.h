@@ -28,7 +28,7 @@ namespace pincer::engine {
 
 using VectorMap = Eigen::Map<Eigen::VectorXd>;
 
-constexpr int kMoverFreedoms = 6;
+constexpr int kMoverFreedoms = 6;  // of a rigid body; runs of joints are cut to it
 
 // Calls act with the number of rows, as a constant where it is three: nearly all contacts have
 // three, and the compiler knows what to do then.

@@ -125,6 +125,7 @@ void MoverMatrix::skip(int i) {
 bool MoverMatrix::factorise() { return spend(costOfFactorisation(), scratch_) && scratch_.lu.factorise(); }
 
 std::int64_t MoverMatrix::costOfFactorisation() const {
+  // Multiplications: per contact estimated, per product of two blocks of 6 x 6 counted.
   constexpr std::int64_t kPerContact = 600, kPerProduct = 216;
   return kPerContact * problem_.contactCount() + kPerProduct * scratch_.lu.products();
 }

@@ -11,7 +11,7 @@
 namespace pincer::engine {
 
 constexpr int kMostStuckBodies = 4, kMostStuckPoints = 12;  // beyond, the blocks of few_contacts.h are as good
-constexpr int kMostStuckMovers = kMostStuckBodies + kMostStuckPoints;
+constexpr int kMostStuckMovers = kMostStuckBodies + kMostStuckPoints;  // of both kinds
 
 // Which of the movers are points, and the number of each among its kind.
 class StuckMovers {

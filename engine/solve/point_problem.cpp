@@ -83,7 +83,7 @@ class Groove {
   }
 
  private:
-  static constexpr int kPlaces = 2 * (2 * kSteps + 1);
+  static constexpr int kPlaces = 2 * (2 * kSteps + 1);  // of both walls: the least, kSteps on either side
 
   struct Slip {
     double d[2];   // u_T = (sigma - least) d + width (-d_2, d_1): how fast it grows, from where it is least

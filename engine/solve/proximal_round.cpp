@@ -67,7 +67,7 @@ double ProximalRound::gradient() {
 
 // Overwrites scratch.change.
 bool ProximalRound::isLeftBelow(double speed) {
-  constexpr double kNone[kMaxContactRows] = {};
+  constexpr double kNone[kMaxContactRows] = {};  // q: of the change alone, not of what moves anyway
   double* const left = scratch_.change.data();
   for (int i = 0; i < problem_.contactCount(); ++i) {
     const int first = problem_.firstRow(i);
@@ -125,7 +125,7 @@ bool ProximalRound::step() {
   for (int i = 0; i < problem_.contactCount(); ++i) {
     const int first = problem_.firstRow(i);
     withRows(problem_.rows(i), [&](auto rows) {
-      constexpr double kNone[kMaxContactRows] = {};
+      constexpr double kNone[kMaxContactRows] = {};  // q, as in isLeftBelow
       velocityOf(problem_.sidesOf(i), rows, kNone, d, change + first);
     });
   }

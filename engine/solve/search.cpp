@@ -359,10 +359,10 @@ class Search {
   }
 
   static constexpr double kMostAccuracies = 100;  // of what is too entangled for anything but sweeps
-  static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;
+  static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;  // rounds, failures, Newton steps, chosen
   static constexpr int kPatient = 10;             // times as much of everything, where there is time
   static constexpr double kSoftestEpsilon = 0.1;  // the last of kSoftEpsilons
-  static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, kSoftestEpsilon};
+  static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, kSoftestEpsilon};  // [-], tried in turn; decades, chosen
 
   const ContactProblem& problem_;
   const SolverOptions& options_;

@@ -20,7 +20,7 @@ constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max() / 2;
 // blocks row-major with stride kMaxContactRows.
 enum class Coupling : std::uint8_t { kNone, kIdentity, kGeneral };
 struct ContactTerms {
-  static constexpr int kSize = kMaxContactRows * kMaxContactRows;
+  static constexpr int kSize = kMaxContactRows * kMaxContactRows;  // numbers of a contact's block
   Coupling coupling = Coupling::kNone;
   bool has_R = false;
   double epsilon = 0;

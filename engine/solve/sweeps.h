@@ -49,7 +49,7 @@ class Sweeps {
   const ContactProblem& problem_;
   double* const r_;
   double* const y_;
-  static constexpr int kTermsBefore = 2;
+  static constexpr int kTermsBefore = 2;  // numbers before the matrices: 1 / W_tt, 1 / W_nn
   // per contact: of isotropic ones 1 / W_tt, 0 of others; 1 / W_nn; the inverse of W_ii, of others; W_ii
   double* const terms_;
   int stride_;

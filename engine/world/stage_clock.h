@@ -8,6 +8,7 @@
 namespace pincer::engine {
 
 enum class Stage : std::uint8_t { kPredict, kCollideBodies, kFingerContacts, kSolve, kAdvance, kFingerReport, kCount };
+// Stages of a tick in their order, and their names in tables of times.
 constexpr int kStageCount = static_cast<int>(Stage::kCount);
 constexpr std::array<const char*, kStageCount> kStageNames = {"predict", "body contacts", "finger contacts",
                                                               "solve",   "advance",       "pad places"};

@@ -9,8 +9,8 @@
 namespace pincer::grasp {
 namespace {
 
-constexpr int kRings = 3, kSpokes = 8;  // 24 points stand for a patch
-constexpr double kShare = 1.0 / (kRings * kSpokes);
+constexpr int kRings = 3, kSpokes = 8;               // 24 points stand for a patch
+constexpr double kShare = 1.0 / (kRings * kSpokes);  // of the load that a point carries [-]
 
 // Radii of the rings that halve each third of the load, over their mean: sqrt(m), and sqrt(1
 // - (1 - m)^(2/3)), for m = 1/6, 1/2, 5/6.
@@ -21,6 +21,7 @@ constexpr double kCos = 0.92387953251128675613, kSin = 0.38268343236508977173;  
 
 // Unit directions; the rings take turns, so that the points don't lie on rays.
 using Spokes = std::array<std::array<double, 2>, kSpokes>;
+// Every 45 degrees, from x on.
 constexpr Spokes kStraight = {{{1, 0},
                                {kHalfRoot, kHalfRoot},
                                {0, 1},
@@ -29,6 +30,7 @@ constexpr Spokes kStraight = {{{1, 0},
                                {-kHalfRoot, -kHalfRoot},
                                {0, -1},
                                {kHalfRoot, -kHalfRoot}}};
+// Half way between those.
 constexpr Spokes kTurned = {{{kCos, kSin},
                              {kSin, kCos},
                              {-kSin, kCos},
