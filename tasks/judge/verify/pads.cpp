@@ -117,7 +117,7 @@ class PadRun {
   std::array<grasp::FingerInput, 2> inputs_;
 };
 
-const contact::Shape kBrick = contact::Box{Vec3(0.015, 0.02, 0.025)};
+const contact::Shape kBrick = contact::Box{Vec3(0.015, 0.02, 0.025)};  // half sides [m]
 
 // Nudged at the start; judged from when the nudge has been taken up.
 std::vector<Record> hold(const PadGrip& grip, MeasureContext& context) {
@@ -202,8 +202,7 @@ std::vector<Lie> lies() {
 
 // Every lie between pads of every size, square and round, hard and soft, nudged about all axes: the worst of all.
 std::vector<Record> sweeps(MeasureContext& context) {
-  // Widths of pads [m]: narrower and wider than the objects.
-  constexpr std::array<double, 5> kWidths = {0.005, 0.01, 0.02, 0.03, 0.04};
+  constexpr std::array<double, 5> kWidths = {0.005, 0.01, 0.02, 0.03, 0.04};  // [m]: under and over the objects
   double slip = 0, turn = 0, flagged = 0, grips = 0;
   for (const Lie& lie : lies()) {
     for (std::size_t k = 0; k < 4 * kWidths.size(); ++k, ++grips) {
