@@ -27,6 +27,7 @@ struct CommandEntry {
   void (*add)(CLI::App& app, int& exit_code);
 };
 
+// Headings of the groups of commands in --help.
 constexpr const char* kExperiments = "Commands for experiments and sessions";
 constexpr const char* kPhysics = "Commands for physics";
 constexpr const char* kJudges = "Commands that judge pincer";
@@ -43,6 +44,7 @@ constexpr CommandEntry kCommands[] = {
     {kThings, addDevicesCommand},     {kTexts, addKeysCommand},         {kTexts, addSchemaCommand},
     {kTexts, addManualCommand},       {kTexts, addCompletionCommand}};
 
+// Stands below the commands in --help.
 constexpr const char* kExamples = R"(
 Examples:
   pincer run sphere-pickup --out out/first               a simulated participant picks up spheres

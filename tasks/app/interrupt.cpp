@@ -14,7 +14,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may take
 std::atomic<std::int64_t> g_first_ns{0};  // when the first came; 0: none has
 static_assert(std::atomic<std::int64_t>::is_always_lock_free);
 
-constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP};
+constexpr int kEnding[] = {SIGINT, SIGTERM, SIGHUP};  // signals that ask a program to end
 
 // Signals that come so soon after the first are the same wish [ns]: `timeout` and shells signal a program and its
 // group. Nobody presses a key twice on purpose as fast.

@@ -69,7 +69,7 @@ std::string coordinateForm(const engine::WorldModel& world, const engine::TreeMo
 }
 
 std::string driveForm(const engine::WorldModel& world, const engine::TreeModel& tree, const engine::TreeDrive& own) {
-  constexpr std::array kControls = {"a force", "to a position", "to a rate"};
+  constexpr std::array kControls = {"a force", "to a position", "to a rate"};  // by DriveModel::Control
   const engine::DriveModel& drive = world.drives[slot(own.drive)];
   std::vector<std::string> joints;
   for (const engine::TreeDrive::Term& term : own.terms)

@@ -59,7 +59,7 @@ std::string shapesForm(const engine::WorldModel& world, const engine::BodyModel&
   std::vector<std::string> names;
   for (const engine::ColliderModel& c : engine::collidersOf(world, body)) names.push_back(nameOf(c.shape));
   if (names.size() == 1) return names.front();
-  constexpr std::size_t kMost = 4;
+  constexpr std::size_t kMost = 4;  // shapes that are named; chosen: they fit a line
   const std::string further = names.size() > kMost ? fmt::format(", and {} more", names.size() - kMost) : "";
   const std::size_t count = names.size();
   names.resize(std::min(count, kMost));

@@ -21,7 +21,7 @@ std::string durationText(double seconds) {
 }  // namespace
 
 std::string progressLine(const std::string& what, std::int64_t done, std::int64_t total, double elapsed) {
-  constexpr int kWidth = 30;
+  constexpr int kWidth = 30;  // [characters] of the bar; chosen
   const double share = std::clamp(static_cast<double>(done) / static_cast<double>(total), 0.0, 1.0);
   const int filled = static_cast<int>(share * kWidth);
   const std::string left = share > 0 ? fmt::format(", {} left", durationText(elapsed * (1 - share) / share)) : "";

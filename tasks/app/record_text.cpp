@@ -23,7 +23,7 @@ std::string boundText(const Record& r) {
   return fmt::format("{} {}", r.relation, numberText(r.bound));
 }
 
-constexpr std::size_t kColumns = 5;
+constexpr std::size_t kColumns = 5;  // name, metric, value, unit, bound
 using Row = std::array<std::string, kColumns>;
 
 Row rowOf(const Record& r) { return {r.name, r.metric, numberText(r.value), r.unit, boundText(r)}; }

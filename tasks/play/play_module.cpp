@@ -10,8 +10,8 @@ namespace {
 
 using namespace pincer;
 
-constexpr int kMostItems = 8;
-const char* const kScenes[] = {"pickup", "pinch"};
+constexpr int kMostItems = 8;                       // bodies and fingertips; chosen: both scenes have four
+const char* const kScenes[] = {"pickup", "pinch"};  // by playOpen's number
 std::optional<tasks::PlaySession> session;
 // Of each thing its frame in W: three columns of R, and p [m].
 std::array<double, 12 * kMostItems> frames;

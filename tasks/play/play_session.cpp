@@ -9,7 +9,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kBall = 1;
+constexpr int kBall = 1;                           // place of the ball among the bodies, after the dish or floor
 constexpr double kBallRadius = 0.02, kTip = 8e-3;  // [m]
 constexpr double kStiffness = 400;                 // of the fingers of pickup [N/m]
 constexpr double kCloseSpeed = 0.1;                // of the fingers [m/s]

@@ -14,7 +14,7 @@
 namespace pincer::tasks {
 
 enum class Relation : std::uint8_t { kEqual, kAtMost, kAtLeast };
-constexpr std::string_view kRelationNames[] = {"==", "<=", ">="};
+constexpr std::string_view kRelationNames[] = {"==", "<=", ">="};  // by Relation, as scenes write them
 
 struct Expectation {
   Quantity quantity;

@@ -7,7 +7,7 @@
 
 namespace pincer::tasks {
 
-constexpr int kRecordedFingers = 2;
+constexpr int kRecordedFingers = 2;  // index finger and thumb; sessions have columns for two
 
 // Bytes that are no text.
 struct Bytes {
@@ -51,7 +51,7 @@ struct EventRecord {
 // Settings that a trial was given by whoever's hands did it, before its first tick: all that a tick
 // depends on besides its inputs and the protocol.
 struct HandsRecord {
-  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // NaN: it doesn't tell
   struct Finger {
     std::array<double, 3> base_offset_W{};        // of the arm's base from its place in the scene [m]
     double base_turn = kNone;                     // about W's z axis [rad]; NaN: nobody said where the base stands
@@ -130,7 +130,7 @@ struct ReadingRecord {
 // One row per trial, written when it ends and durable before the next begins. What a task
 // doesn't measure is 0, or NaN for a real number.
 struct TrialRecord {
-  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();  // NaN: not measured
 
   std::int64_t trial = 0;
   std::string task = "sphere-pickup";

@@ -81,7 +81,7 @@ struct Scene {
   std::int64_t ticks() const;  // in `duration`
 };
 
-constexpr int kSceneVersion = 1;
+constexpr int kSceneVersion = 1;  // of the format, which a scene names
 
 // Throws InputError: file, line, path, value, range, remedy.
 Scene readScene(const std::string& path);

@@ -8,6 +8,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Codes of 16 bits: 0 to the largest from a column's least to its greatest number; the one above: no number.
 constexpr int kLargestCode = 65534;
 constexpr std::uint16_t kAbsent = 65535;
 

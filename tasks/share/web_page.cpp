@@ -14,15 +14,15 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kDataVersion = 1;
+constexpr int kDataVersion = 1;  // of the format of the page's data
 
 std::string_view nameOf(Layer layer) {
-  constexpr std::string_view kNames[] = {"solid", "mark", "ground"};
+  constexpr std::string_view kNames[] = {"solid", "mark", "ground"};  // by Layer
   return kNames[static_cast<std::size_t>(layer)];
 }
 
 std::string_view nameOf(Part part) {
-  constexpr std::string_view kNames[] = {"thing", "contact", "force", "cone", "joint", "device", "goal"};
+  constexpr std::string_view kNames[] = {"thing", "contact", "force", "cone", "joint", "device", "goal"};  // by Part
   return kNames[static_cast<std::size_t>(part)];
 }
 

@@ -24,6 +24,7 @@ struct ChartedQuantity {
   double dead;
   bool of_fingers, of_body;
 };
+// Title, unit, `dead` in that unit, if of each finger, if of a body; in the order of the keys 1 to 8.
 constexpr std::array<ChartedQuantity, ChartBoard::kQuantities> kCharted = {{{"grip force", "N", 1e-3, true, false},
                                                                             {"height", "mm", 1e-3, false, true},
                                                                             {"tick", "us", 1e-3, false, false},
@@ -32,7 +33,7 @@ constexpr std::array<ChartedQuantity, ChartBoard::kQuantities> kCharted = {{{"gr
                                                                             {"place", "mm", 1e-3, false, true},
                                                                             {"contact forces", "N", 1e-3, false, true},
                                                                             {"friction used", "", 1e-3, true, false}}};
-constexpr std::size_t kShownAtFirst = 3;
+constexpr std::size_t kShownAtFirst = 3;  // of them; chosen: they leave the scene free
 
 double loadOf(const Snapshot& snapshot, int body) {
   double sum = 0;

@@ -17,7 +17,7 @@ namespace pincer::tasks {
 
 class ChartBoard {
  public:
-  static constexpr std::size_t kQuantities = 8;
+  static constexpr std::size_t kQuantities = 8;  // a key each, 1 to 8
 
   // Shows the first three of those that there are. `start` says where bodies were at first; `fingers` are their names.
   ChartBoard(const Snapshot& start, const std::vector<std::string>& fingers);

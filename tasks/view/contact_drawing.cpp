@@ -8,6 +8,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Colours: red, green, blue, 0 to 1; chosen by eye.
 const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f);
 constexpr double kLeastForce = 1e-3;  // smaller ones get no arrow [N]
 constexpr int kMostLabels = 8;        // more contacts than these, and only fingers' forces are written beside them

@@ -12,6 +12,7 @@ namespace {
 
 constexpr float kPadSide = 148;                        // of a fingerpad inset [pixels]
 constexpr float kChartWidth = 250, kChartHeight = 78;  // [pixels]
+// Colours: red, green, blue and opacity, 0 to 255; chosen by eye.
 constexpr ImU32 kSkinInk = IM_COL32(222, 170, 148, 255), kPadInk = IM_COL32(205, 130, 112, 255),
                 kGridInk = IM_COL32(255, 255, 255, 60);
 constexpr ImU32 kWantedInk = IM_COL32(25, 60, 160, 255), kTactorInk = IM_COL32(20, 24, 30, 255),
@@ -124,7 +125,7 @@ void drawChart(const StripChart& chart, const Vec2& pointer) {
     list->AddText({std::min(x + 4, corner.x + kChartWidth - 50), corner.y + 0.4f * kChartHeight},
                   IM_COL32(255, 255, 255, 200), fmt::format("{:.2f} s", cursor.point->time).c_str());
   }
-  constexpr ImU32 kScaleInk = IM_COL32(255, 255, 255, 150);
+  constexpr ImU32 kScaleInk = IM_COL32(255, 255, 255, 150);  // faint, not to hide the lines
   list->AddText({corner.x + 3, corner.y}, kScaleInk, fmt::format("{:g} {}", range.high, chart.unit()).c_str());
   const float low = corner.y + kChartHeight - ImGui::GetFontSize();
   list->AddText({corner.x + 3, low}, kScaleInk, fmt::format("{:g}", range.low).c_str());

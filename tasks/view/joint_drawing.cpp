@@ -7,6 +7,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Colours: red, green, blue, 0 to 1; chosen by eye.
 const Vec3f kAxis(0.95f, 0.65f, 0.05f), kStop(0.75f, 0.05f, 0.20f), kDrive(0.35f, 0.10f, 0.75f);
 constexpr double kLeastDrive = 1e-3;  // smaller ones get no arrow [N, N m over the size of marks]
 

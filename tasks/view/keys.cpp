@@ -9,6 +9,7 @@ namespace {
 
 using devices::Key;
 
+// Keys in groups, in the order in which the help shows them.
 constexpr std::array kProgramKeys = {
     KeyBinding{Key::kKeyF1, "F1", ViewAction::kHelp, "this help"},
     KeyBinding{Key::kKeyF2, "F2", ViewAction::kTiming, "health: timing of the servo, state of the devices"},
@@ -68,6 +69,7 @@ constexpr std::array kHandKeys = {
     KeyBinding{',', ",", ViewAction::kGripLess, "weaker grip"},
     KeyBinding{'.', ".", ViewAction::kGripMore, "stronger grip"},
 };
+// Groups of keys with their headings in the help.
 constexpr std::array kGroups = {
     KeyGroup{"Program", kProgramKeys},
     KeyGroup{"Time", kTimeKeys},
@@ -75,6 +77,7 @@ constexpr std::array kGroups = {
     KeyGroup{"Charts, shown or no longer; the pointer on one reads it", kChartKeys},
     KeyGroup{"Fingers, with --devices mouse", kHandKeys},
 };
+// Gestures of the mouse, with no finger led by it and with one.
 constexpr std::array kCameraGestures = {
     MouseGesture{"left button, drag", "turn the camera"},
     MouseGesture{"right button, drag", "move the camera"},
@@ -125,6 +128,7 @@ bool toggle(ViewAction action, ViewChoice& choice) {
     ViewAction action;
     bool ViewChoice::*shown;
   };
+  // Actions that turn a choice on and off.
   constexpr std::array kSwitches = {
       Switch{ViewAction::kHelp, &ViewChoice::help},       Switch{ViewAction::kTiming, &ViewChoice::timing},
       Switch{ViewAction::kOverlay, &ViewChoice::overlay}, Switch{ViewAction::kContacts, &ViewChoice::contacts},

@@ -35,6 +35,7 @@ class PageWindow {
 
 // The character of a key; 0: none.
 char typedCharacter(const devices::InputEvent& event) {
+  // Keys that aren't letters on an American keyboard, without and with Shift.
   constexpr std::string_view kPlain = "`1234567890-=[]\\;',./", kShifted = "~!@#$%^&*()_+{}|:\"<>?";
   if (event.code < ' ' || event.code > '~') return 0;
   const char key = static_cast<char>(event.code);

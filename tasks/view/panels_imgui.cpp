@@ -9,10 +9,11 @@
 namespace pincer::tasks {
 namespace {
 
+// Colours: red, green, blue and opacity, 0 to 255; chosen by eye.
 constexpr ImU32 kInk = IM_COL32(18, 22, 28, 255), kPaper = IM_COL32(255, 255, 255, 205),
                 kSlipInk = IM_COL32(190, 30, 10, 255), kLeaderInk = IM_COL32(18, 22, 28, 120),
                 kPullInk = IM_COL32(25, 60, 160, 255);
-const ImVec4 kGoodText(0.45f, 0.85f, 0.50f, 1), kBadText(1.0f, 0.45f, 0.35f, 1);
+const ImVec4 kGoodText(0.45f, 0.85f, 0.50f, 1), kBadText(1.0f, 0.45f, 0.35f, 1);  // likewise, 0 to 1
 
 void textLine(const std::string& text) { ImGui::TextUnformatted(text.c_str()); }
 void dimLine(const std::string& text) { ImGui::TextDisabled("%s", text.c_str()); }

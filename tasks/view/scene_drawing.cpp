@@ -11,6 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Colours: red, green, blue, 0 to 1; chosen by eye.
 const Vec3f kSkin(0.83f, 0.50f, 0.37f), kPad(0.88f, 0.40f, 0.34f), kNail(0.93f, 0.72f, 0.64f);
 const Vec3f kTip(0.20f, 0.22f, 0.25f);
 const Vec3f kPorcelain(0.50f, 0.52f, 0.54f);
@@ -253,7 +254,7 @@ void SceneDrawing::addGoal(const Snapshot& snapshot, DrawList& list) const {
         {rod_, placed(pointing(from_W, to_W - from_W), Vec3(thin, thin, (to_W - from_W).norm())), paint, Layer::kMark});
   };
   if (snapshot.trial.goal_height) {
-    constexpr int kSides = 32;
+    constexpr int kSides = 32;  // of the goal's circle; chosen: it looks round
     const auto corner = [&](int k) {
       const double a = 2 * std::numbers::pi * k / kSides;
       return Vec3(middle_W.x() + 1.6 * object->radius * math::cos(a),

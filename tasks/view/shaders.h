@@ -161,6 +161,7 @@ void main() {
 #endif
 )";
 
+// Depths of all that hides the sun, as the sun sees it.
 inline constexpr const char* kShadowVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 p_M;
 uniform mat4 X_WM;
@@ -168,6 +169,7 @@ uniform mat4 world_to_sun;
 void main() { gl_Position = world_to_sun * (X_WM * vec4(p_M, 1.0)); }
 )";
 
+// Draws nothing: the depth is all.
 inline constexpr const char* kShadowFragmentShader = R"(#version 330 core
 void main() {}
 )";
@@ -189,6 +191,7 @@ void main() {
 }
 )";
 
+// The sky behind all: grey at the horizon, bluish above.
 inline constexpr const char* kSkyFragmentShader = R"(#version 330 core
 in float up;
 out vec4 colour;

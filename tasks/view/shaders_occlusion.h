@@ -10,6 +10,7 @@
 
 namespace pincer::tasks {
 
+// How much light near things take from each pixel, by taps of the depths around it.
 inline constexpr const char* kOcclusionFragmentShader = R"(#version 330 core
 uniform sampler2D depths;
 uniform mat4 clip_to_view;

@@ -12,8 +12,8 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kRound = 96;  // segments of a full turn
-constexpr double kUp = M_PI / 2;
+constexpr int kRound = 96;        // segments of a full turn
+constexpr double kUp = M_PI / 2;  // latitude of a profile's upper end [rad]
 
 void addViewTriangle(ViewMesh& mesh, const std::array<ViewVertex, 3>& corners) {
   for (const ViewVertex& corner : corners) {
@@ -214,7 +214,7 @@ namespace {
 // Of the hull of a pad: each face moved out by the rounding, and its edges and corners
 // rounded by strips and caps of small facets.
 void addRoundEdge(ViewMesh& mesh, const Vec3& from, const Vec3& to, const Vec3& n, const Vec3& m, double rho) {
-  constexpr int kParts = 6;
+  constexpr int kParts = 6;  // of an edge's turn; chosen: it looks round
   const auto normal = [&](int i) -> Vec3 { return (n + (m - n) * (static_cast<double>(i) / kParts)).normalized(); };
   for (int i = 0; i < kParts; ++i) {
     const Vec3 a = normal(i), b = normal(i + 1);

@@ -10,6 +10,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Colours: red, green, blue and opacity, 0 to 255; chosen by eye.
 constexpr ImU32 kBarPaper = IM_COL32(20, 23, 28, 205), kBarInk = IM_COL32(235, 238, 242, 255),
                 kBarDim = IM_COL32(235, 238, 242, 110);
 constexpr ImU32 kPassed = IM_COL32(70, 140, 235, 255), kTouchInk = IM_COL32(115, 217, 128, 255),

@@ -15,10 +15,10 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr devices::SurfaceSize kBenchSize{1280, 720};
-constexpr int kBenchParts = 32;             // of an icosahedron's edge: 20480 triangles
-constexpr double kLeastPictures = 5;        // a second, in software on two cores
-constexpr double kMostSnapshotCost = 2000;  // [ns]
+constexpr devices::SurfaceSize kBenchSize{1280, 720};  // [pixels]: a usual window
+constexpr int kBenchParts = 32;                        // of an icosahedron's edge: 20480 triangles
+constexpr double kLeastPictures = 5;                   // a second, in software on two cores
+constexpr double kMostSnapshotCost = 2000;             // [ns]
 
 // The pick-up, its sphere replaced by a mesh of 20480 triangles when wanted, in the middle of the lift.
 Simulation liftedScene(bool mesh) {

@@ -121,7 +121,7 @@ void Viewer::play() {
 
 // The seconds before what is shown.
 void Viewer::chartRecording() {
-  constexpr std::size_t kPoints = 400;
+  constexpr std::size_t kPoints = 400;  // of a chart 250 pixels wide: as many show each pixel; chosen
   const double from = shown().time - StripChart::kSeconds;
   const std::size_t last = scrub_.value_or(history_.size() - 1), first = history_.find(from),
                     step = (last - first) / kPoints + 1;

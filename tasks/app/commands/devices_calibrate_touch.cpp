@@ -26,12 +26,12 @@ namespace {
 
 using devices::haply::HaplyHost;
 
-constexpr std::size_t kTouches = 12;
-constexpr double kTogether = 1e-3;   // both handles within so much [m]
-constexpr double kStill = 0.3;       // for so long [s]
-constexpr int kFewestSamples = 30;   // in that time
-constexpr double kFarther = 0.015;   // from every place before [m]
-constexpr double kNextWithin = 120;  // for the next place [s]
+constexpr std::size_t kTouches = 12;  // places; chosen: half more than the fit needs (kFewestTouches)
+constexpr double kTogether = 1e-3;    // both handles within so much [m]
+constexpr double kStill = 0.3;        // for so long [s]
+constexpr int kFewestSamples = 30;    // in that time
+constexpr double kFarther = 0.015;    // from every place before [m]
+constexpr double kNextWithin = 120;   // for the next place [s]
 
 double secondsNow() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

@@ -27,7 +27,7 @@ void addMeshFile(CLI::App& command, MeshInput& input) {
 namespace {
 
 contact::TriangleMesh readAs(contact::ReadOptions options, const MeshInput& input) {
-  constexpr std::int64_t kSteps = 1000;
+  constexpr std::int64_t kSteps = 1000;  // of the progress: a file tells a share, progress counts
   Progress progress("reading", kSteps);
   options.metres_per_unit = contact::metresPerUnit(input.units);
   options.progress = [&](double fraction) {

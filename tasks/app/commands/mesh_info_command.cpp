@@ -32,6 +32,7 @@ docs/meshes.md explains each finding.
 Example:
   pincer mesh check bunny.obj --units m --finger-radius 8)";
 
+// Radius of a fingertip [mm]: a micrometre to a metre, wider than any finger; chosen.
 constexpr NumberRule kFingerMillimetres = {.min = 1e-3, .max = 1e3, .remedy = "In millimetres; a fingertip has 8."};
 
 struct MeshArguments {

@@ -65,6 +65,7 @@ void repeatScene(const Scene& scene, std::int64_t ticks, PlanTimes& times, Progr
 
 // The median of batches, so that a batch in which another process ran doesn't count.
 double costOfMark() {
+  // Batches, odd for their median; marks in one, since a single mark is too short to time; chosen.
   constexpr int kBatches = 101, kMarks = 100;
   TickTimes batches(kBatches);
   engine::StageClock clock;

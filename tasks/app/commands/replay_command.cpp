@@ -33,7 +33,7 @@ Examples:
   pincer replay out/first/session.db --trial 3 --view
   pincer replay out/first/session.db --trial 3 --at 2.5 --screenshot grasp.png)";
 
-constexpr std::int64_t kLastTrial = 1'000'000'000;
+constexpr std::int64_t kLastTrial = 1'000'000'000;  // chosen: more than any session has
 
 struct ReplayArguments {
   std::string session;

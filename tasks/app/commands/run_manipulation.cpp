@@ -56,6 +56,7 @@ Examples:
   pincer run manipulation --study study.json --out out/study
   pincer run manipulation --resume --out out/study)";
 
+// Words of options: of --shading, by closed forms; of --condition, all of them, by either word.
 constexpr const char *kExactly = "exactly", *kAllConditions = "all", *kBothConditions = "both";
 
 struct ManipulationArguments {

@@ -24,6 +24,7 @@ std::string studySchema(std::string_view task, const Study& published) {
   return SchemaWriter().schemaOf(fmt::format("pincer study, {}, version 1", task), published);
 }
 
+// Kinds of file, and how the schema of each is written.
 constexpr FileKind kFileKinds[] = {
     {"scene", [] { return std::string(sceneSchema()); }},
     {"manipulation", [] { return studySchema("manipulation", ManipulationStudy{}); }},

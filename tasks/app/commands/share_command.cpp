@@ -45,7 +45,7 @@ struct ShareArguments {
 std::optional<std::string> sessionAt(const std::string& path) {
   if (fs::is_directory(path)) return (fs::path(path) / "session.db").string();
   if (!fs::is_regular_file(path)) return {};
-  constexpr std::string_view kBegin = "SQLite format 3";
+  constexpr std::string_view kBegin = "SQLite format 3";  // of any SQLite file; a NUL follows
   std::string begin(kBegin.size(), '\0');
   std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
   return begin == kBegin ? std::optional(path) : std::nullopt;

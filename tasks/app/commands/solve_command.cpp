@@ -28,7 +28,7 @@ the file has it. Exit code 1: one is above --enough.
 Example:
   pincer solve problem.txt --enough 1e-8)";
 
-constexpr NumberRule kEnough = {.min = 0, .max = 1};
+constexpr NumberRule kEnough = {.min = 0, .max = 1};  // of the error, over the problem's q [-]: dense_problem.h
 
 struct SolveArguments {
   std::vector<std::string> files;

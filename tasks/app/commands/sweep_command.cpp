@@ -44,7 +44,7 @@ Examples:
   pincer sweep sphere-pickup --vary people.tactor_sd=0.0005:0.01:5:log --participants 4
   pincer sweep delay-discrimination --vary conditions[1].travel_share=0.4:0.8:5 --out out/front-end)";
 
-constexpr std::array kFormatNames = {"csv", "json", "hdf5"};
+constexpr std::array kFormatNames = {"csv", "json", "hdf5"};  // by SweepFormat
 
 struct SweepArguments {
   std::string what, out, cases, shard, machines, format = "csv";

@@ -120,12 +120,13 @@ struct GrowthStep {
   int n;         // 20 n^2 triangles
   double bound;  // [us]
 };
+// Each has ten times the triangles of the last, 980 to 1,003,520; of the largest nothing is promised.
 constexpr GrowthStep kGrowth[] = {{7, 0.5}, {22, 1.2}, {71, 3}, {224, std::numeric_limits<double>::infinity()}};
 
 // By turns: where the machine changes its speed meanwhile both change.
 double costRatio(const SmoothMesh& large, const FingerPath& over_large, const SmoothMesh& small,
                  const FingerPath& over_small) {
-  constexpr int kRounds = 401, kQueries = 1000;
+  constexpr int kRounds = 401, kQueries = 1000;  // rounds, odd for their median; calls in one; chosen
   Walk a(large, over_large), b(small, over_small);
   return ratioOfCosts([&] { a.query(kQueries); }, [&] { b.query(kQueries); }, kRounds);
 }
@@ -171,6 +172,7 @@ struct ReadKind {
   const char* ending;
   bool ascii;
 };
+// Name, ending, and if it is written as text: the formats that are read.
 constexpr ReadKind kReadKinds[] = {{"STL", ".stl", false},
                                    {"PLY", ".ply", false},
                                    {"PLY as text", ".ply", true},
@@ -179,6 +181,7 @@ constexpr ReadKind kReadKinds[] = {{"STL", ".stl", false},
 
 // A file of a million triangles, written before and removed after.
 std::vector<Record> readCost(MeasureContext& context) {
+  // Promises [s], [-]; chosen: a person waits no longer, and sees it go on.
   constexpr double kMostSeconds = 10, kFewestReports = 10;
   const TriangleMesh mesh = contact::geodesicSphere(0.04, 224);
   std::vector<Record> records;

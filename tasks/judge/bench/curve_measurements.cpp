@@ -31,7 +31,7 @@ double angleOf(const Vec2& p) { return math::atan2(-p.x(), p.y()); }  // counter
 
 // Half a segment short of the ends, whose outer halves are straight, in steps of half a milliradian.
 CurveFigures alongArc(SurfaceVariant variant) {
-  constexpr int kSteps = 1440;
+  constexpr int kSteps = 1440;  // of half a milliradian; chosen: well below a segment
   const Curve curve(contact::arcPolygon(kArcRadius, kArcTurn, kArcSweep), variant);
   const double reach = 0.5 * (kArcSweep - kArcTurn);
   contact::CurveTracker tracker;

@@ -140,8 +140,8 @@ std::vector<Record> frictionRows(MeasureContext&) {
 // it a second finger with friction .5, which feels sqrt(1 + mu^2) as much where nothing holds it. A snag is a force
 // above twice that, but in a groove that locks: rigid walls hold there what is pulled along them or out, by any force.
 std::vector<Record> dragOverPart(const TriangleMesh& triangles, MeasureContext& context) {
-  constexpr double kMu = 0.5;  // [-]
-  constexpr int kTicks = 20000;
+  constexpr double kMu = 0.5;    // [-]
+  constexpr int kTicks = 20000;  // 20 s at 1 kHz; chosen
   const Mesh part = meshOf(triangles);
   const Vec3 above(0, 0, 1.2 * part.surface->boundingRadius());
   FingerScene slippery(part, {0, 0}, above), rough(part, {kMu, kMu}, above);
@@ -227,7 +227,7 @@ void push(FingerScene& scene, double side, Random& random, Pushes& pushes) {
 // A plate of 1 mm with fingers of 8 mm: the device goes up to 14 mm past its surface.
 // Never may the force turn to the other side.
 std::vector<Record> thinWalls(MeasureContext& context) {
-  constexpr int kPushes = 16000;
+  constexpr int kPushes = 16000;  // half of them from each side; chosen
   const Mesh plate = meshOf(contact::gridBox({0.04, 0.03, 0.0005}, 16));
   Random random(5);
   Pushes pushes;

@@ -60,7 +60,7 @@ const PairPoint& deepestPoint(const PairPoints& p) {
 }
 
 MeshFelt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& context) {
-  constexpr int kPlaces = 20000;
+  constexpr int kPlaces = 20000;  // of kSlideStep each; chosen
   const contact::PatchCacheHandle cache = contact::makePatchCache();
   PairPoints found;
   const auto ask = [&](const Shape& ball, int i) {

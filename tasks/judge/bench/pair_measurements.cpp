@@ -157,6 +157,7 @@ bool wasThere(const PairPoints& before, std::uint32_t feature) {
 
 SlideFigures slideOf(const PairBody& a, const PairBody& b) {
   constexpr double kMargin = 1e-3;  // [m]
+  // Calls; 11 batches, odd for a median; chosen.
   constexpr TimingBudget kBudget{.warm_up = 100, .batches = 11, .calls_per_batch = 200, .single_calls = 0};
   SlideFigures f;
   PairQuery query;
@@ -189,7 +190,8 @@ SlideFigures slideOf(const PairBody& a, const PairBody& b) {
 }
 
 std::vector<Record> measurePair(const PairBody& a, const PairBody& b, MeasureContext& context) {
-  constexpr int kPlaced = 60;
+  constexpr int kPlaced = 60;  // placements per range; chosen: the exact gap is searched for each
+  // Ranges of gaps [m]: one near, one of contacts to round-off, one up to a millimetre deep.
   struct {
     const char* name;
     double from, to;

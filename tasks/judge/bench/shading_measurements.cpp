@@ -28,6 +28,7 @@ struct NamedVariant {
   SurfaceVariant variant;
   const char* name;
 };
+// Variants of a surface that are compared, and their names in the record.
 constexpr std::array<NamedVariant, 4> kVariants = {{{SurfaceVariant::smooth, "smooth"},
                                                     {SurfaceVariant::smooth_published, "smooth as published"},
                                                     {SurfaceVariant::force, "force"},

@@ -14,7 +14,7 @@ namespace {
 // The turn of a contact at an edge, 5 % more than it should; in a hollow the finger's centre
 // runs on a smaller circle than its contact.
 double turnLimit(const BenchObject& object) {
-  constexpr double kSlack = 1.05;
+  constexpr double kSlack = 1.05;  // [-]: the 5 % above; chosen
   if (object.kind == ObjectKind::tight) return std::numeric_limits<double>::infinity();
   return kSlack * std::max(1.0, kBenchFinger / (object.concave_radius - kBenchFinger));
 }

@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::uint64_t kBenchSeed = 1971;
+constexpr std::uint64_t kBenchSeed = 1971;  // any number: the figures are the same in each run
 
 // An observer of the population above whose level of probability `p` is 1.
 PsychometricFunction drawObserver(double p, Random& random, Sigmoid shape = Sigmoid::kNormal) {
@@ -68,6 +68,7 @@ Measurement staircaseMeasurement(const std::string& name, const StaircaseRule& r
 // Thresholds that the published designs' staircases make of the same observers: theirs are
 // shorter. Levels in units of the threshold.
 std::vector<Measurement> publishedStaircases(int observers) {
+  // A bound that nothing exceeds: told, not judged.
   constexpr double kNoPromise = std::numeric_limits<double>::infinity();
   const StaircaseRule smoothness{.start = 2,
                                  .large_step = 0.4,
@@ -115,7 +116,7 @@ std::vector<Record> stepSizes(int observers, MeasureContext& context) {
 
 // Bias of the threshold and how often its interval holds the true one.
 std::vector<Record> constantStimuli(Sigmoid shape, int observers, MeasureContext& context) {
-  constexpr double kPoint = 0.75;
+  constexpr double kPoint = 0.75;  // probability halfway between a guess and certainty [-]
   const std::vector<double> levels{0.2, 0.5, 0.8, 1.0, 1.2, 1.5, 1.8};
   Random random(kBenchSeed);
   double sum = 0;

@@ -9,8 +9,8 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSpeed = 0.1;  // [m/s]
-constexpr double kSweepStep = kSpeed * kBenchTick;
+constexpr double kSpeed = 0.1;                      // [m/s]
+constexpr double kSweepStep = kSpeed * kBenchTick;  // way of a tick [m]
 
 }  // namespace
 

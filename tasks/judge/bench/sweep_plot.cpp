@@ -38,6 +38,7 @@ std::string tableOf(const std::vector<NamedTrace>& traces) {
 
 // Above the place itself; below, how far each is from the first, where facets show as saw teeth.
 std::string scriptOf(const std::string& object, const std::vector<NamedTrace>& traces) {
+  // Colours of the lines, in the order of the traces.
   constexpr std::array<const char*, 4> kColours = {palette::kBlue, palette::kGreen, palette::kOrange,
                                                    palette::kVermillion};
   std::string place = "plot ", difference = "plot ";

@@ -140,7 +140,7 @@ class Search {
   }
 
   void tryCircle(const Vec3& e) {
-    constexpr int kSamples = 96;
+    constexpr int kSamples = 96;  // of the circle: 3.75 degrees apart, between which a maximum is searched; chosen
     const Mat3 F = frameFromNormal(e);
     const auto at = [&](double t) -> Vec3 { return math::cos(t) * F.col(0) + math::sin(t) * F.col(1); };
     const double step = 2 * M_PI / kSamples;
@@ -163,6 +163,7 @@ class Search {
   }
 
   void trySphere() {
+    // Directions of the sphere; the best of them that are climbed from; chosen.
     constexpr int kSamples = 1000, kClimbed = 6;
     std::vector<Best> samples;
     for (int i = 0; i < kSamples; ++i) {  // Fibonacci's spiral: 0.11 rad between neighbours

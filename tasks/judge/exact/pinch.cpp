@@ -45,7 +45,7 @@ std::vector<double> StuckLift::rises(int ticks, double h) const {
     const Target target = minimumJerk(height, reach_time, t - start_time);
     return State(y[1], 2 / total_mass * (stiffness * (target.height - y[0]) + damping * (target.velocity - y[1])));
   };
-  constexpr int kSteps = 20;
+  constexpr int kSteps = 20;  // of Runge and Kutta in a tick: their error falls with the fourth power; chosen
   std::vector<double> heights;
   State y = State::Zero();
   for (int i = 0; i < ticks; ++i) {
@@ -74,7 +74,7 @@ PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radiu
   };
   State y;
   y << 0, 0, 0, v0, w0;
-  constexpr double kStep = 2e-6, kAtRest = 1e-7;
+  constexpr double kStep = 2e-6, kAtRest = 1e-7;  // [s]; slip at which it rests [m/s]; chosen
   double t = 0;
   for (double s = speed(y); s > kAtRest; s = speed(y)) {
     // finer towards the end, where the direction may still turn

@@ -22,6 +22,7 @@ struct MujocoSetting {
   const char* integrator;
   bool soft = false;  // contacts as soft as they come (solref .02), as in the scene of its issue 3328
 };
+// Settings that are compared: stiff friction (impratio) or slip taken out afterwards (noslip), rigid and soft.
 constexpr MujocoSetting kMujocoSettings[] = {{"impratio 1e4", 1e4, 0, "Euler"},
                                              {"impratio 100 noslip 30", 100, 30, "Euler"},
                                              {"impratio 1e4 RK4", 1e4, 0, "RK4"},

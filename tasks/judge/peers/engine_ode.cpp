@@ -137,6 +137,7 @@ class OdeEngine : public BenchEngine {
     int axes = 0;
     for (const bool locked : body.locked) axes += locked;
     dJointSetLMotorNumAxes(slides, axes);
+    // The most force along the first, second and third locked axis.
     constexpr int kLimits[] = {dParamFMax1, dParamFMax2, dParamFMax3};
     for (int k = 0, axis = 0; k < 3; ++k) {
       if (!body.locked[static_cast<std::size_t>(k)]) continue;

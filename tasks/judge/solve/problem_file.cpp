@@ -12,6 +12,7 @@
 namespace pincer::tasks {
 namespace {
 
+// 512 MB bounds the memory that a mistaken file takes; chosen.
 constexpr InputKind kProblemFile = {"a contact problem (a text file, docs/engine.md)", 512 * kMegabyte, true,
                                     "Split it into islands that don't share a body."};
 

@@ -263,7 +263,7 @@ class Draft {
   }
 
   void drawHulls() {
-    constexpr int kCorners = 14;
+    constexpr int kCorners = 14;  // points that a hull is made of; chosen
     options.max_contacts = 0;
     const double size = logUniform(random_, 5e-3, 0.05);
     for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})

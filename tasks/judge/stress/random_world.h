@@ -31,6 +31,7 @@ enum class StressClass {
   kJoints,     // trees of joints with limits, drives, springs and dry friction, masses up to 1e4 : 1 (random_tree.h)
   kCoarse,     // as pads, half of them spheres, that tremble by up to 1 mm; ticks from 0.1 to 10 ms
 };
+// By StressClass.
 constexpr std::string_view kStressClassNames[] = {"mass-ratio", "redundant", "overlap",   "spin",   "tick",  "inertia",
                                                   "heap",       "stiffness", "teleport",  "noise",  "pads",  "walls",
                                                   "hulls",      "hit",       "compounds", "joints", "coarse"};

@@ -33,8 +33,8 @@ std::string faultOfTick(const StressWorld& world, const grasp::GraspState& state
              : fmt::format("energy {:.6g} J, began with {:.6g} J", now, most);
 }
 
-constexpr double kCap = 5e-4;  // of one world in kCappedEvery, again: half a tick of 1 kHz [s]
-constexpr int kCappedEvery = 5;
+constexpr double kCap = 5e-4;    // of one world in kCappedEvery, again: half a tick of 1 kHz [s]
+constexpr int kCappedEvery = 5;  // worlds; chosen: such a world runs up to kMostRuns times more
 
 // `tick_times` gets this thread's [us].
 WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double budget,
@@ -64,7 +64,7 @@ WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double b
 // With the cap. Ticks that took longer are timed again: all runs compute the same bits,
 // and what interrupts one doesn't come again.
 WorldResult runCapped(StressClass kind, std::uint64_t seed, std::vector<double>& tick_times) {
-  constexpr int kMostRuns = 3;
+  constexpr int kMostRuns = 3;  // of which a tick's least time counts; chosen: an interruption rarely comes thrice
   std::vector<double> least;
   const WorldResult result = runWorld(kind, seed, 1, kCap, least);
   for (int n = 1; n<kMostRuns&& * std::max_element(least.begin(), least.end())> 1e6 * kCap; ++n) {
@@ -77,12 +77,12 @@ WorldResult runCapped(StressClass kind, std::uint64_t seed, std::vector<double>&
 }
 
 std::vector<Record> stressClass(StressClass kind, const StressOptions& options, MeasureContext& context) {
-  constexpr int kThreadsEvery = 20;
+  constexpr int kThreadsEvery = 20;  // worlds; chosen: such a world runs once more, on two threads
   std::vector<Record> failures;
   std::vector<double> tick_times, capped_times, untimed;
   int ticks = 0, flagged = 0, differing = 0, capped = 0, capped_failed = 0;
   const auto note = [&failures](const std::string& fault) {
-    constexpr std::size_t kShown = 8;
+    constexpr std::size_t kShown = 8;  // faults by name; the last one counts all further ones
     if (!fault.empty() && failures.size() < kShown)
       failures.push_back(exactly(fault, 1, "-", 0));
     else if (!fault.empty())

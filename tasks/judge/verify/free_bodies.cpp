@@ -56,7 +56,7 @@ exact::HeavyTop heavyTopOfScene() {
 // heading rate at the start is `heading_rate`.
 double axisError(Scene scene, double heading_rate, MeasureContext& context) {
   const exact::HeavyTop top = heavyTopOfScene();
-  constexpr double kAngle = std::numbers::pi / 6;
+  constexpr double kAngle = std::numbers::pi / 6;  // of the axis to the vertical [rad], as in the scene
   const Vec3 axis(math::sin(kAngle), 0, math::cos(kAngle));
   const Vec3 w_W = Vec3(0, 0, heading_rate) + (top.w3 - heading_rate * axis.z()) * axis;
   scene.starts[0].w_W = w_W;

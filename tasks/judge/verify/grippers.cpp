@@ -214,7 +214,7 @@ std::vector<Record> objects(MeasureContext& context) {
 // is closed, with the motor on or off again.
 double clampImbalance(bool stays_on, double torque, MeasureContext& context) {
   constexpr double kLead = 1.5915494309189535e-4;  // [m/rad]
-  constexpr std::size_t kBlock = 1, kJaw = 2;
+  constexpr std::size_t kBlock = 1, kJaw = 2;      // places of the scene's bodies
   Scene scene = readBuiltinScene("worm_clamp");
   const double off = stays_on ? torque : 0;
   scene.drives[0].control = Trajectory::throughKeyframes({{0, Vec3::Zero(), Vec3::Zero()},

@@ -14,6 +14,7 @@ namespace {
 using engine::JointKind;
 
 constexpr double kStart = 0.7, kRate = 12, kSeconds = 10;  // of the crank [rad, rad/s, s]
+// The four bars, and the slider crank: lengths [m], masses [kg], inertias [kg m^2] in the order of linkages.h; chosen.
 constexpr exact::FourBar kBars{0.06, 0.2, 0.15, 0.18, 2e-4, 4e-4, 0.05, 3e-4};
 constexpr exact::SliderCrank kEngine{0.05, 0.16, 2e-4, 0.04, 2e-4, 0.1};
 

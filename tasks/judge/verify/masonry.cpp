@@ -10,7 +10,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kStones = 16;
+constexpr int kStones = 16;                             // of the scene's arch
 constexpr double kArchRadius = 0.2, kArchDepth = 0.05;  // of the scene [m]
 
 // A wedge of the arch about its centre, upright.

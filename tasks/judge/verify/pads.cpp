@@ -117,7 +117,7 @@ class PadRun {
   std::array<grasp::FingerInput, 2> inputs_;
 };
 
-const contact::Shape kBrick = contact::Box{Vec3(0.015, 0.02, 0.025)};
+const contact::Shape kBrick = contact::Box{Vec3(0.015, 0.02, 0.025)};  // half sides [m]
 
 // Nudged at the start; judged from when the nudge has been taken up.
 std::vector<Record> hold(const PadGrip& grip, MeasureContext& context) {
@@ -202,7 +202,7 @@ std::vector<Lie> lies() {
 
 // Every lie between pads of every size, square and round, hard and soft, nudged about all axes: the worst of all.
 std::vector<Record> sweeps(MeasureContext& context) {
-  constexpr std::array<double, 5> kWidths = {0.005, 0.01, 0.02, 0.03, 0.04};
+  constexpr std::array<double, 5> kWidths = {0.005, 0.01, 0.02, 0.03, 0.04};  // [m]: under and over the objects
   double slip = 0, turn = 0, flagged = 0, grips = 0;
   for (const Lie& lie : lies()) {
     for (std::size_t k = 0; k < 4 * kWidths.size(); ++k, ++grips) {
@@ -235,7 +235,7 @@ Measurement meshOf(const char* name, const contact::TriangleMesh& mesh, double h
 
 // Profile of a solid of the half length `half`, of the radius `middle` there and of less by `bulge` at its ends [m].
 std::vector<Vec2> bulging(double middle, double bulge, double half) {
-  constexpr int kSteps = 12;
+  constexpr int kSteps = 12;  // of the profile, a parabola; chosen
   std::vector<Vec2> profile{{0, -half}};
   for (int i = 0; i <= kSteps; ++i) {
     const double z = -1 + 2.0 * i / kSteps;
@@ -348,7 +348,7 @@ std::vector<Record> rollsRod(MeasureContext&) {
   grip.gravity_W.setZero();
   PadRun run(grip);
   for (int i = 0; i < 200; ++i) run.tick();
-  constexpr int kStrokes = 1000, kTicks = 500;
+  constexpr int kStrokes = 1000, kTicks = 500;  // strokes; [ticks] of one: half a second
   double worst = 0;
   for (int i = 1; i <= kStrokes * kTicks; ++i) {
     const double phase = 2 * M_PI * i / kTicks, rate = 2 * M_PI / (kTicks * 1e-3);

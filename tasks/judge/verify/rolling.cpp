@@ -22,7 +22,7 @@ std::vector<Record> slideToRoll(MeasureContext& context) {
 // Rolls if and only if mu >= 2/7 tan th; way and turn after 1 s.
 std::vector<Record> incline(MeasureContext& context) {
   const Scene scene = readBuiltinScene("rolling_incline");
-  constexpr double kTheta = std::numbers::pi / 6, kRadius = 0.02;
+  constexpr double kTheta = std::numbers::pi / 6, kRadius = 0.02;  // [rad], [m], as in the scene
   double way_error = 0, turn_error = 0;
   int done = 0;
   for (const double ratio : {0.3, 0.99, 1.01, 3.0}) {

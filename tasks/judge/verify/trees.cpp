@@ -80,6 +80,7 @@ std::vector<Record> doublePendulum(MeasureContext& context) {
 // A disk on a stick whose tip a ball joint holds, started `ratio` times as fast round the vertical as slow precession
 // is. The joint's armature makes it a tree.
 double topError(double spin, double ratio, double h, MeasureContext& context) {
+  // Of the top: mass [kg], tip to centre [m], inertias [kg m^2], tilt [rad]. The exact top has the armature too.
   constexpr double kMass = 0.1, kLever = 0.04, kAcross = 6e-4, kAlong = 1e-3, kArmature = 1e-6,
                    kAngle = std::numbers::pi / 6;
   const exact::HeavyTop top{kMass, kLever,  kAcross + kMass * kLever * kLever + kArmature, kAlong + kArmature,
@@ -116,6 +117,7 @@ std::vector<Record> top(MeasureContext& context) {
 }
 
 std::vector<Record> ellipticPendulum(MeasureContext&) {
+  // Masses [kg], inertia [kg m^2], bob below block [m], first angle [rad], time [s]; chosen.
   constexpr double kBlock = 0.5, kBob = 0.2, kInertia = 1e-4, kDistance = 0.25, kStart = 1, kSeconds = 10;
   Linkage world;
   const int block = world.ball(kBlock, 1e-4, Vec3::Zero());
@@ -160,7 +162,7 @@ Linkage driven(double k, double d, double target, bool falls) {
 }
 
 double stepError(double k, double d) {
-  constexpr double kStep = 0.01;
+  constexpr double kStep = 0.01;  // of the target [m or rad]; errors are told as a share of it
   Linkage world = driven(k, d, kStep, false);
   const exact::DampedOscillator oscillator{1, k, d};
   double worst = 0;
@@ -185,6 +187,7 @@ std::vector<Record> drives(MeasureContext&) {
 
 // Two wheels on parallel axes, the second geared to go -2.5 times as fast.
 std::vector<Record> gear(MeasureContext&) {
+  // Torque [N m], inertias of the wheels [kg m^2], rate of the second over the first [-]; chosen.
   constexpr double kTorque = 0.3, kFirst = 2e-3, kSecond = 5e-4, kRatio = -2.5;
   Linkage world;
   const int a = world.ball(0.2, kFirst, Vec3::Zero()), b = world.ball(0.1, kSecond, {0.1, 0, 0});

@@ -72,6 +72,7 @@ StrokeQuestion questionOf(ArcQuantity quantity, const ArcCondition& condition) {
 }
 
 TrialTexts textsOf(ArcQuantity quantity) {
+  // The task, told before each question.
   constexpr const char* kFeel = "Stroke to and fro as long as you like; then raise the finger and press Enter";
   if (quantity == ArcQuantity::kTurn) return {kFeel, "Which was the smooth one? 1 or 2, then Enter"};
   return {kFeel, quantity == ArcQuantity::kBacklash ? "Which had more backlash? 1 or 2, then Enter"
@@ -293,6 +294,7 @@ std::vector<ListedStimulus> ArcExperiment::training(const StudyRun& run) const {
 }
 
 std::string ArcExperiment::feedback(const ResponseRecord& response) const {
+  // The right answer's words, by ArcQuantity.
   constexpr std::array<const char*, 3> kHad = {"was the smooth one", "had more backlash", "had more delay"};
   return fmt::format("The {} {}; you said {}. {}", response.interval == 1 ? "first" : "second",
                      kHad[static_cast<std::size_t>(study_.quantity)], response.answer,

@@ -14,7 +14,7 @@ std::array<double, 2> toArray(const Vec2& v) { return {v.x(), v.y()}; }
 
 FingerRecord fingerRecord(const TickState& state, const TickScratch& scratch, const FingerInputs& inputs,
                           std::size_t i) {
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // NaN: not measured
   const grasp::FingerReport& report = scratch.fingers[i];
   const FingerOutputs& output = scratch.outputs[i];
   FingerRecord record;

@@ -169,7 +169,7 @@ std::string LocalisationExperiment::feedback(const ResponseRecord& response) con
 }
 
 PlaceCues LocalisationExperiment::cuesOf(const StudyTrial& trial) const {
-  constexpr int kMostDraws = 1000;
+  constexpr int kMostDraws = 1000;  // until a second cylinder is within kFarthestCentre; bounds the search, chosen
   Random random(seedFor(trial.seed, kCylinder));
   const LocalisationCondition& condition = conditionOf(trial);
   PlaceCues cues;

@@ -5,7 +5,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::size_t kThumb = 1;
+constexpr std::size_t kThumb = 1;     // index of a hand's fingers
 constexpr double kThumbRing = 0.021;  // [m]; the index finger's has 19 mm (Doxon 2014, ch. 4)
 
 }  // namespace

@@ -16,10 +16,12 @@
 
 namespace pincer::tasks {
 
+// Remedy of every number of a published design.
 inline constexpr std::string_view kAsPublished = "Leave it out for the published design.";
 // all 64 bits are read, kept and written
 inline constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::uint64_t>::max();
 
+// Words of choices in study files, by the enum of each.
 inline constexpr std::array<std::string_view, 6> kHandShadingNames = {"task",  "smooth",           "facet",
                                                                       "force", "smooth_published", "exactly"};
 inline constexpr std::array<std::string_view, 2> kHandTaskNames = {"sphere-pickup", "cylinder-alignment"};
@@ -35,13 +37,14 @@ inline constexpr NumberRule kStep = {1e-9, 1, false, kAsPublished};
 template <class T, class Of>
 concept FieldsOf = std::same_as<std::remove_const_t<T>, Of>;
 
+// Words of a survey's and an order's choices, by the enum of each.
 inline constexpr std::array<std::string_view, 4> kAnswerKindNames = {"scale", "number", "choice", "text"};
 inline constexpr std::array<std::string_view, 3> kConditionOrderNames = {"balanced", "listed", "shuffled"};
 inline constexpr std::array<std::string_view, 3> kAskedForNames = {"session", "condition", "task and condition"};
 
 template <FieldsOf<SurveyItem> Item, class Visit>
 void visitParameters(Item& i, Visit&& visit) {
-  constexpr NumberRule kBound = {-1e9, 1e9, false, "Leave it out for 1 to 7."};
+  constexpr NumberRule kBound = {-1e9, 1e9, false, "Leave it out for 1 to 7."};  // in the question's unit; chosen
   visit("name", i.name, Parameter{"in tables"});
   visit("text", i.text, Parameter{"that the person reads"});
   visit("kind", i.kind, Parameter{"of answer", {}, kAnswerKindNames});

@@ -10,8 +10,9 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kByChance = 0.05;
-constexpr int kFewestStudies = 4;  // with fewer not even all of them are certainly more than half (Wilson)
+constexpr double kByChance = 0.05;  // share of misses that chance explains [-]: the published tests' level
+constexpr int kFewestStudies = 4;   // with fewer not even all of them are certainly more than half (Wilson)
+// Widest half-widths of a figure that follows, over its mean and over the published one [-]: claims.h.
 constexpr double kWidestOfLost = 0.25, kWidestOfKnown = 2;
 
 bool certainlyMost(int k, int n) { return wilsonInterval(k, n).first > 0.5; }

@@ -7,7 +7,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
+constexpr double kLost = std::numeric_limits<double>::quiet_NaN();  // NaN: the copy at hand has no such figure
 
 }  // namespace
 

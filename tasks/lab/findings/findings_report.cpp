@@ -62,6 +62,7 @@ std::string designOf(const FindingsResult& r) {
       o.seed, r.interrupted ? " Interrupted: the tables say how many experiments were whole." : "");
 }
 
+// How to read the tables; stands above them.
 constexpr const char* kReading =
     "Means with their 95 % intervals (Student t) over the simulated experiments; difference: with the CLD minus "
     "without; d_z: mean over "
@@ -76,7 +77,7 @@ constexpr const char* kReading =
 
 // One block per measure, a line per variant: the difference with its interval, in units of the force-only mean.
 Figure forestFigure(const FindingsResult& r) {
-  constexpr std::array<std::size_t, 4> kShown = {0, 2, 4, 6};
+  constexpr std::array<std::size_t, 4> kShown = {0, 2, 4, 6};  // places in findingMeasures()
   Figure figure;
   figure.name = "findings";
   figure.title = "Every variant beside the primary analysis";

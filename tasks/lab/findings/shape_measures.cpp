@@ -14,6 +14,7 @@ namespace {
 struct Confusion {
   const char *shown, *named;
 };
+// Published confusions that the claims tell of; the first is compared with the next (confusions:first).
 constexpr std::array<Confusion, 10> kTen{{{"tetrahedron", "cone"},
                                           {"cone", "tetrahedron"},
                                           {"triangle", "octagon"},

@@ -21,6 +21,7 @@ constexpr double kIsRaised = 5e-3;         // so far off the surface a person's 
 // more keys than a trial takes; further ones are dropped rather than allocated in the tick
 constexpr std::size_t kMostEvents = 1024;
 
+// By the key 1 to 9; 0: none was pressed.
 constexpr std::array<const char*, 10> kChosen = {"",
                                                  "you chose 1",
                                                  "you chose 2",

@@ -63,7 +63,7 @@ class FlatBelief {
     Mat4 P = Mat4::Zero();  // covariance of x
     double weight = 1;
   };
-  static constexpr std::size_t kHypotheses = 1200;
+  static constexpr std::size_t kHypotheses = 1200;  // 0.3 degrees between two directions at the start; chosen
 
   double update(Hypothesis& h, const std::array<FlatPercept, 2>& pinch) const;
   double update(Hypothesis& h, const FlatPercept& percept, double half) const;

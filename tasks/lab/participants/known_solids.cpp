@@ -8,9 +8,9 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kRounds = 40;  // of projections: to a fraction of a millimetre, far below what is felt
-constexpr std::size_t kMostPlanes = 8;
-constexpr double kTold = 0.04;  // circumradius and half length [m]
+constexpr int kRounds = 40;             // of projections: to a fraction of a millimetre, far below what is felt
+constexpr std::size_t kMostPlanes = 8;  // of a pyramid, the base among them; the study's tetrahedron has 4
+constexpr double kTold = 0.04;          // circumradius and half length [m]
 
 double cross2(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 

@@ -18,6 +18,7 @@
 
 namespace pincer::tasks {
 
+// The solids of the shape study, in the order of its list of answers.
 constexpr int kSolids = 7;
 constexpr std::array<const char*, kSolids> kSolidNames{"cone",        "cylinder", "cube",    "sphere",
                                                        "tetrahedron", "octagon",  "triangle"};

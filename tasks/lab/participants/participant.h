@@ -63,7 +63,7 @@ struct TrialCues {
 
 // The participant's present doing; for records and for the judge, who counts as squeezes only what was meant to lift.
 enum class HandPhase : std::uint8_t { kListen, kReach, kClose, kRead, kSqueeze, kLift, kHold, kTurn, kReturn, kRest };
-constexpr int kHandPhases = 10;
+constexpr int kHandPhases = 10;  // of HandPhase
 const char* nameOf(HandPhase phase);
 
 // One deliberate reading of the senses, as the participant would report it: kept for the analysis

@@ -16,7 +16,7 @@ std::uint64_t fnv1a(const std::string& text) {
 const char* nameOf(Strategy strategy) { return strategy == Strategy::kRational ? "rational" : "simple"; }
 
 const char* nameOf(TactorUse use) {
-  constexpr const char* kNames[] = {"place", "slip", "nothing"};
+  constexpr const char* kNames[] = {"place", "slip", "nothing"};  // by TactorUse
   return kNames[static_cast<std::size_t>(use)];
 }
 

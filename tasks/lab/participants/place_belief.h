@@ -52,7 +52,7 @@ class PlaceBelief {
     Vec2 o = Vec2::Zero();
     double mu = 0.5, weight = 1;
   };
-  static constexpr std::size_t kHypotheses = 300;
+  static constexpr std::size_t kHypotheses = 300;  // for three numbers, o and mu; chosen
 
   double holds(const Hypothesis& h, const Vec2& shift, double grip) const;
   template <class LogLikelihood>

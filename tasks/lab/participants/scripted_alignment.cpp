@@ -12,7 +12,7 @@ constexpr int kFirstProbes = 3;      // from one end of the hand's reach to the 
 constexpr int kSimpleTurns = 2;      // of the simple strategy
 constexpr double kSimpleSd = 0.3;    // what the simple strategy holds its direction to be known to [rad]
 constexpr double kLongestReach = 2;  // a reach of the pinch ends there at the latest, its sizes being small [s]
-constexpr double kNothingFelt = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNothingFelt = std::numeric_limits<double>::quiet_NaN();  // NaN: no reading yet
 
 double wrapToPi(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
 double aboutZ(const Vec3& v_W) { return math::atan2(v_W.y(), v_W.x()); }

@@ -7,7 +7,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kNothingRead = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNothingRead = std::numeric_limits<double>::quiet_NaN();  // NaN: no reading yet
 
 PlaceModel placeModelOf(const TrialCues& cues, const SensingLimits& limits, const ScriptedPickupOptions& options) {
   constexpr double kBothFingers = 0.7071;  // the mean of two independent readings

@@ -13,10 +13,10 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kFrontLimit = 0.132;  // delay of the front end [s]
-constexpr double kLongestLag = 0.2;    // [s]
-constexpr double kMostLags = 200;      // at 1 kHz; samples of a damaged session may stand closer
-constexpr std::int32_t kTouchingFlag = 1, kParkedFlag = 8;
+constexpr double kFrontLimit = 0.132;                       // delay of the front end [s]
+constexpr double kLongestLag = 0.2;                         // [s]
+constexpr double kMostLags = 200;                           // at 1 kHz; samples of a damaged session may stand closer
+constexpr std::int32_t kTouchingFlag = 1, kParkedFlag = 8;  // bits of FingerRecord::flags
 
 // A run of kept samples of one finger in which its tactor was in use.
 class LagSearch {

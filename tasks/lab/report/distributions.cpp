@@ -11,8 +11,9 @@
 namespace pincer::tasks {
 namespace {
 
+// Of the continued fraction [-]: stands for 0, which would be divided by; and ends it, at four times round-off.
 constexpr double kSmallest = 1e-300, kContinuedTo = 1e-15;
-constexpr int kMostTerms = 10'000;
+constexpr int kMostTerms = 10'000;  // of it; ends what doesn't converge, chosen
 
 double logGamma(double x) {
   constexpr double g = 7;
@@ -55,8 +56,8 @@ double normalBelow(double z) { return 0.5 * math::erfc(-z / std::numbers::sqrt2)
 
 // P(range of k standard normal numbers < w).
 double rangeBelow(double w, int k) {
-  constexpr double kFar = 8;  // SDs; beyond lies 1e-15
-  constexpr int kSteps = 160;
+  constexpr double kFar = 8;   // SDs; beyond lies 1e-15
+  constexpr int kSteps = 160;  // of a tenth of an SD; even, for Simpson
   return k * simpson(-kFar, kFar, kSteps, [&](double z) {
            const double density = math::exp(-0.5 * z * z) / std::sqrt(2 * std::numbers::pi);
            return density * math::pow(std::max(0.0, normalBelow(z) - normalBelow(z - w)), k - 1);
@@ -80,8 +81,8 @@ double studentTail(double t, double n) { return incompleteBeta(n / (n + t * t), 
 
 double studentizedRangeTail(double q, int k, double n) {
   PINCER_ASSERT(q >= 0 && k >= 2 && n >= 1);
-  constexpr int kSteps = 160;
-  constexpr double kFar = 9;  // SDs of s
+  constexpr int kSteps = 160;  // of a ninth of an SD; even, for Simpson
+  constexpr double kFar = 9;   // SDs of s
   const double sd = 1 / std::sqrt(2 * n), low = std::max(0.0, 1 - kFar * sd), high = 1 + kFar * sd;
   const double scale = math::log(2.0) + 0.5 * n * math::log(0.5 * n) - logGamma(0.5 * n);
   const double below = simpson(low, high, kSteps, [&](double s) {

@@ -58,6 +58,7 @@ std::optional<Figure> tickFigure(const SessionReader& session);
 std::string fileNamePart(const std::string& text);
 
 namespace palette {
+// Colours that the colour-blind tell apart (Okabe and Ito), ink and grey: red, green, blue in hexadecimal.
 constexpr const char *kBlue = "#0072B2", *kVermillion = "#D55E00", *kGreen = "#009E73", *kPurple = "#CC79A7",
                      *kOrange = "#E69F00", *kSkyBlue = "#56B4E9", *kInk = "#222222", *kGrey = "#999999";
 }  // namespace palette
@@ -69,6 +70,7 @@ int conditionPoint(std::size_t condition);  // gnuplot's number of its mark
 struct FingerStyle {
   const char *name, *colour;
 };
+// By the finger's number in a session.
 constexpr std::array<FingerStyle, kRecordedFingers> kFingers{
     {{"index finger", palette::kGreen}, {"thumb", palette::kPurple}}};
 

@@ -13,8 +13,8 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kInDegrees = 180 / std::numbers::pi;
-constexpr double kTarget = 0.5 * std::numbers::pi;  // of the flat: towards the monitor, W's +y
+constexpr double kInDegrees = 180 / std::numbers::pi;  // [deg/rad]
+constexpr double kTarget = 0.5 * std::numbers::pi;     // of the flat: towards the monitor, W's +y
 
 // A colour '#rrggbb' as gnuplot counts it, half transparent.
 unsigned long colourNumber(const char* colour) { return 0x70000000UL + std::strtoul(colour + 1, nullptr, 16); }

@@ -113,13 +113,14 @@ std::string orderWords(const SessionSummary& s, std::size_t m) {
 }  // namespace
 
 const char* conditionColour(std::size_t condition) {
+  // Colours of conditions: all but the fingers' green and purple.
   constexpr std::array<const char*, 6> kColours{palette::kBlue,    palette::kVermillion, palette::kOrange,
                                                 palette::kSkyBlue, palette::kInk,        palette::kGrey};
   return kColours[condition % kColours.size()];
 }
 
 int conditionPoint(std::size_t condition) {
-  constexpr std::array<int, 4> kDiscSquareTriangleDiamond{7, 5, 9, 13};
+  constexpr std::array<int, 4> kDiscSquareTriangleDiamond{7, 5, 9, 13};  // gnuplot's numbers of filled marks
   return kDiscSquareTriangleDiamond[condition % kDiscSquareTriangleDiamond.size()];
 }
 

@@ -12,6 +12,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Measures whose people are drawn.
 constexpr std::array<std::string_view, 4> kShown{"tries", "pickup_time", "alignment_error", "alignment_time"};
 
 std::vector<const MeasureRow*> shownRows(const SessionSummary& s) {

@@ -11,7 +11,7 @@ namespace pincer::tasks {
 
 namespace {
 
-constexpr int kParked = 8;
+constexpr int kParked = 8;            // bit of FingerRecord::flags
 constexpr double kSmallestReach = 3;  // [mm] so that a tactor that stands still looks still
 
 std::string placesCsv(const TrialTrace& trace) {

@@ -37,6 +37,7 @@ struct Percentile {
   const char* label;
   double share;
 };
+// Shares of the ticks that have a line [-]; 1.0: the longest of all.
 constexpr Percentile kPercentiles[] = {{"median", 0.5}, {"99 % ≤", 0.99}, {"99.9 % ≤", 0.999}, {"largest", 1.0}};
 
 std::string threeDigits(double value) {

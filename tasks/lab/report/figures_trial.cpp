@@ -12,7 +12,7 @@ namespace pincer::tasks {
 
 namespace {
 
-constexpr int kTouchingLevel = 1, kSlidingLevel = 2;
+constexpr int kTouchingLevel = 1, kSlidingLevel = 2;  // bits of FingerRecord::flags
 struct EventStyle {
   const char *kind, *label, *colour;
   int mark;  // gnuplot's point type

@@ -49,6 +49,7 @@ std::string answerList(const AskedItem& item) {
   return words;
 }
 
+// The page's style sheet, in it as it is: a report is one file.
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark; --paper: #fff; --ink: #222; --dim: #555; --line: #e2e2e2; --mark: #0072B2; --tint: #eef5fa;
   --warn: #D55E00; --warn-tint: #fdf1e9; --code: #f6f6f6; --target: #fff3cd; }
@@ -83,7 +84,7 @@ a { color: var(--mark); }
 
 // RFC 4648, section 4.
 std::string base64(const std::string& bytes) {
-  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";  // by 6 bits
   std::string text;
   text.reserve(bytes.size() / 3 * 4 + 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {

@@ -8,8 +8,8 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegrees = 57.29577951308232;  // per radian
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();  // NaN: nothing to take a mean of
+constexpr double kDegrees = 57.29577951308232;                         // per radian
 
 struct Sums {
   double tries = 0, lifts = 0, pickup_time = 0, error = 0, signed_error = 0, alignment_time = 0, regrasps = 0;

@@ -12,7 +12,7 @@ namespace pincer::tasks {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  // no figure
 
 // P(|T| < sqrt(dof) tan(theta)).
 double twoSidedOfAngle(double theta, int dof) {

@@ -29,6 +29,7 @@ struct SpeedKind {
   Estimate StudyCondition::*of;
   double published_low, published_high;  // [mm/s]
 };
+// Speeds that are drawn, with the ends of the published ones [mm/s].
 constexpr std::array<SpeedKind, 2> kSpeeds{{{"finger", palette::kGreen, &StudyCondition::finger_speed, 32, 74},
                                             {"tactor", palette::kPurple, &StudyCondition::tactor_speed, 5, 19}}};
 

@@ -17,7 +17,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kGuess = 0.5, kStaircasePoint = 0.70710678118654752;  // two intervals; where 1-up 2-down settles
-constexpr int kCurvePoints = 200;
+constexpr int kCurvePoints = 200;  // of a drawn curve, for one that looks smooth; chosen
 
 // Levels that staircases with ratios visit are spread evenly over their logarithm, and so is the sigmoid.
 struct LevelAxis {

@@ -18,9 +18,10 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSettled = 0.62;  // share of right answers [-]
-constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSettled = 0.62;                                       // share of right answers [-]
+constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();  // NaN: too few answers for one
 
+// The task whose levels are angles, and its thresholds counts.
 constexpr const char* kCountedInSegments = "smoothness-discrimination";
 
 struct StudyKind {
@@ -30,6 +31,7 @@ struct StudyKind {
   double level_scale;
   Averaged averaged = Averaged::kPositive;
 };
+// Per task: figure, its unit per SI unit, unit of the levels, that per SI unit.
 constexpr std::array<StudyKind, 5> kStudyKinds{
     {{kCountedInSegments, "threshold", "segments", 1, "°", 180 / M_PI},
      {"backlash-discrimination", "threshold", "mm", 1e3, "mm", 1e3},

@@ -15,7 +15,7 @@ namespace pincer::tasks {
 
 namespace {
 
-constexpr double kAllFrictions = std::numeric_limits<double>::quiet_NaN();
+constexpr double kAllFrictions = std::numeric_limits<double>::quiet_NaN();  // NaN: a row for all of them
 
 bool isFault(const TrialRecord& t) { return t.outcome == "fault"; }
 

@@ -20,6 +20,7 @@ struct Measure {
   double (*of)(const TrialRecord&);
 };
 
+// Per trial; key and label tell the unit.
 constexpr std::array<Measure, 6> kMeasures{{
     {"squeezes", "squeezes", [](const TrialRecord& t) { return static_cast<double>(t.squeezes); }},
     {"lifts", "lifts", [](const TrialRecord& t) { return static_cast<double>(t.lifts); }},

@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kLapses[] = {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06};
+constexpr double kLapses[] = {0, 0.01, 0.02, 0.03, 0.04, 0.05, 0.06};  // lambda [-]: the fit's grid, psychometric.h
 constexpr int kSections = 30;  // of golden sections: 0.618^30 = 5e-7 of the range
 
 double sigmoidAt(Sigmoid shape, double z) {
@@ -28,7 +28,7 @@ struct Peak {
 // The maximum of a function with one peak in [low, high].
 template <class Function>
 Peak goldenSection(double low, double high, const Function& f) {
-  constexpr double kRatio = std::numbers::phi - 1;
+  constexpr double kRatio = std::numbers::phi - 1;  // golden section: each step keeps so much of the interval
   double a = high - kRatio * (high - low), b = low + kRatio * (high - low);
   double fa = f(a), fb = f(b);
   for (int i = 0; i < kSections; ++i) {

@@ -17,7 +17,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kKeepsNothing = std::numeric_limits<int>::max();
+constexpr int kKeepsNothing = std::numeric_limits<int>::max();  // ticks between two kept samples: no trial is as long
 
 class ResponseSink final : public StudySink {
  public:

@@ -22,7 +22,7 @@ struct SweptMeasure {
   Over over = Over::kEnd;
 
   double start() const {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();  // that every value is less, or more, than
     return over == Over::kLeast ? kInfinity : -kInfinity;
   }
   double next(double sofar, double value) const {

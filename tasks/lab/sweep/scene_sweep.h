@@ -16,7 +16,7 @@ struct SceneSweep {
   std::vector<std::string> measures;
 };
 
-constexpr std::size_t kMostSceneCases = 100'000;
+constexpr std::size_t kMostSceneCases = 100'000;  // runs of one sweep: bounds a mistaken grid; chosen
 
 // The last measure is how many of the scene's expectations fail, where it has some. Throws InputError where no case can
 // be read: for a path or measure that doesn't fit the scene. `text`: the scene's, by which it is known again.

@@ -8,6 +8,7 @@
 
 namespace pincer::tasks {
 
+// Studies of one sweep, each of many trials: bounds a mistaken grid; chosen.
 constexpr std::size_t kMostStudyCases = 1000;
 
 struct StudySweep {

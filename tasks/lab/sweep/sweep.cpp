@@ -92,7 +92,7 @@ SweepShard parseShard(const std::string& text) {
   const auto first = std::from_chars(text.data(), end, shard.index);
   const bool has_two = first.ec == std::errc() && first.ptr != end && *first.ptr == '/';
   const auto second = has_two ? std::from_chars(first.ptr + 1, end, shard.count) : first;
-  constexpr int kMostShards = 100'000;
+  constexpr int kMostShards = 100'000;  // as many as a sweep of scenes has cases at most (kMostSceneCases)
   const bool is_whole = has_two && second.ec == std::errc() && second.ptr == end;
   if (is_whole && shard.count >= 1 && shard.count <= kMostShards && shard.index >= 1 && shard.index <= shard.count)
     return shard;

@@ -15,8 +15,10 @@
 namespace pincer::tasks {
 namespace {
 
+// Colours of a panel's lines; more lines than colours aren't drawn.
 constexpr std::array kLineColours = {palette::kBlue,   palette::kVermillion, palette::kGreen,
                                      palette::kPurple, palette::kOrange,     palette::kInk};
+// Lines of a panel, and panels side by side: as many as a page shows legibly, chosen.
 constexpr std::size_t kMostLines = kLineColours.size(), kMostColumns = 4;
 constexpr double kNoChange = 1e-9;  // of a number: less is drawn as no change
 

@@ -5,6 +5,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Characters that a shell takes as they are.
 constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=:,./@%";
 
 std::string quotedWord(const std::string& word) {

@@ -90,7 +90,7 @@ std::string sweepJson(const SweepTable& table) {
 
 std::vector<std::string> writeSweep(const SweepTable& table, const std::string& directory, SweepFormat format) {
   makeDirectory(directory);
-  constexpr std::array kEndings = {"csv", "json", "h5"};
+  constexpr std::array kEndings = {"csv", "json", "h5"};  // by SweepFormat
   std::vector<std::string> paths{fmt::format("{}/sweep.{}", directory, kEndings[static_cast<std::size_t>(format)])};
   if (format == SweepFormat::kHdf5)
     writeSweepHdf5(table, paths[0]);

@@ -16,7 +16,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr std::int64_t kSweepId = 0x504e5357;  // "PNSW", in SQLite's header
-constexpr std::int64_t kSweepFormat = 1;
+constexpr std::int64_t kSweepFormat = 1;       // of sweep.db's tables; others are refused
 
 std::string fileOf(const std::string& directory) { return directory + "/sweep.db"; }
 

@@ -9,7 +9,7 @@ namespace {
 using Table = std::pair<double*, std::vector<py::ssize_t>>;
 template <class Row>
 Table tableOf(std::vector<Row>& rows) {
-  constexpr py::ssize_t kColumns = sizeof(Row) / sizeof(double);
+  constexpr py::ssize_t kColumns = sizeof(Row) / sizeof(double);  // numbers of a row: it holds nothing but doubles
   return {reinterpret_cast<double*>(rows.data()), {static_cast<py::ssize_t>(rows.size()), kColumns}};
 }
 Table tableOf(std::vector<double>& row) { return {row.data(), {static_cast<py::ssize_t>(row.size())}}; }

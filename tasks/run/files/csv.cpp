@@ -15,6 +15,7 @@ bool isNumber(std::string_view text) {
 }  // namespace
 
 std::string spreadsheetText(std::string_view text) {
+  // Characters that begin a formula in spreadsheets, and the mark before a text that keeps it one.
   constexpr std::string_view kBeginFormulas = "=+-@\t\r", kKept = "'";
   const bool guarded =
       !text.empty() && (text.starts_with(kKept) || (kBeginFormulas.find(text[0]) != text.npos && !isNumber(text)));

@@ -31,7 +31,7 @@ std::string numberText(double number) { return std::isfinite(number) ? fmt::form
 }  // namespace
 
 std::string quotedJson(std::string_view text) {
-  constexpr std::string_view kNoCharacter = "\uFFFD";
+  constexpr std::string_view kNoCharacter = "\uFFFD";  // Unicode's, for bytes that aren't UTF-8
   std::string out = "\"";
   while (!text.empty()) {
     const char c = text.front();

@@ -146,6 +146,7 @@ class JsonTreeBuilder {
   // Of the value that was just appended to `parent`. Every value has its path, so a
   // file of long keys must not make long ones.
   static std::string pathInside(const JsonValue& parent) {
+    // Lengths of a key and of a path in a message [bytes]; chosen: a line that can be read.
     constexpr std::size_t kLongestKey = 40, kLongestPath = 160;
     const std::string& before = parent.path_;
     if (before.size() > kLongestPath) return before;
@@ -166,6 +167,7 @@ JsonValue parseJson(std::string_view content, const std::string& name) {
   Cursor cursor;
   JsonTreeBuilder builder(name, cursor);
   const char* begin = content.data();
+  // The parser's switches: nothing may follow the value; comments are allowed.
   constexpr bool kWholeInput = true;
   constexpr bool kComments = true;
   nlohmann::json::sax_parse(CountingIterator(begin, &cursor), CountingIterator(begin + content.size(), &cursor),

@@ -18,6 +18,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Time between two looks at the child; chosen: short beside the second that it has to end.
 constexpr auto kLook = std::chrono::milliseconds(2);
 constexpr int kLooksBeforeKill = 500;  // a second
 

@@ -11,6 +11,7 @@ namespace {
 // Switches of whole kinds of force: what is on without saying so may be said to be on.
 void readFlags(const XmlElement& element, Robot& robot) {
   const Values values(element);
+  // Words of a flag, and flags whose kind of force can't be left out here.
   constexpr std::string_view kWords[] = {"disable", "enable"};
   constexpr std::string_view kNeeded[] = {"constraint", "equality", "frictionloss", "limit",    "contact",
                                           "spring",     "damper",   "clampctrl",    "actuation"};

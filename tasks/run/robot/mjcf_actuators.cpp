@@ -22,6 +22,7 @@ struct Draft {
 };
 
 void readGeneral(const Values& values, Draft& draft) {
+  // Types of actuator that drives here can be; oneOf rejects all others.
   constexpr std::string_view kGains[] = {"fixed"}, kBiases[] = {"none", "affine"}, kDynamics[] = {"none"};
   values.oneOf("gaintype", kGains, 0);
   values.oneOf("dyntype", kDynamics, 0);

@@ -12,7 +12,7 @@
 namespace pincer::tasks::mjcf {
 namespace {
 
-constexpr int kMostIncludes = 100;
+constexpr int kMostIncludes = 100;  // files of one robot: bounds what a mistaken one reads; chosen
 
 // Puts the elements of included files where they are included.
 class Includer {
@@ -115,7 +115,7 @@ class Checker {
 
 void readCompilerElement(const XmlElement& element, Compiler& c) {
   const Values values(element);
-  constexpr std::string_view kAngles[] = {"radian", "degree"};
+  constexpr std::string_view kAngles[] = {"radian", "degree"};  // by Compiler::degrees
   c.degrees = values.oneOf("angle", kAngles, c.degrees) == 1;
   c.autolimits = values.boolean("autolimits", c.autolimits);
   c.balance_inertia = values.boolean("balanceinertia", c.balance_inertia);
@@ -126,7 +126,7 @@ void readCompilerElement(const XmlElement& element, Compiler& c) {
     element.reject(
         fmt::format("has eulerseq=\"{}\". Three of x, y, z; capital letters turn about fixed axes.", c.euler_order));
   c.mesh_folder = values.text("meshdir", values.text("assetdir", c.mesh_folder));
-  constexpr std::string_view kFromGeoms[] = {"false", "true", "auto"};
+  constexpr std::string_view kFromGeoms[] = {"false", "true", "auto"};  // by InertiaFromGeoms
   c.inertia_from_geoms = static_cast<InertiaFromGeoms>(
       values.oneOf("inertiafromgeom", kFromGeoms, static_cast<int>(c.inertia_from_geoms)));
   const std::vector<double> groups = values.numbers("inertiagrouprange", 2, 2);

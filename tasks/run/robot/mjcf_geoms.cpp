@@ -11,6 +11,7 @@
 namespace pincer::tasks::mjcf {
 namespace {
 
+// By RobotShape, and by the kind of joint: MJCF's words.
 constexpr std::string_view kGeomTypes[] = {"plane", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh"};
 constexpr std::string_view kJointTypes[] = {"hinge", "slide", "ball", "free"};
 constexpr double kDensity = 1000;  // [kg/m^3], MJCF's

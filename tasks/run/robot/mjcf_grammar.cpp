@@ -6,18 +6,22 @@
 namespace pincer::tasks::mjcf {
 namespace {
 
+// Elements that may hold an element, separated by blanks.
 constexpr std::string_view kBodies = "body worldbody frame replicate";
 constexpr std::string_view kBodiesAndDefault = "body worldbody frame replicate default";
 
+// Remedies that several rows share.
 constexpr std::string_view kTransmission =
     "Only joints and fixed tendons can be driven here; replace the transmission, or leave the actuator out.";
 constexpr std::string_view kActivation =
     "Drives here have no state of their own: use motor, position, velocity or general with dyntype=\"none\".";
 constexpr std::string_view kSoft = "Bodies are rigid here: leave it out, or make it of rigid bodies.";
 
+// Short names, for the rows.
 constexpr Verdict kLooks = Verdict::kLooks, kIgnored = Verdict::kIgnored, kRefused = Verdict::kRefused,
                   kRead = Verdict::kRead;
 
+// MJCF's elements: element, its parents, and the attributes that are read, looked at, ignored and refused.
 constexpr std::array kRows = {
     GrammarRow{"mujoco", "mujoco", "", kRead, "model"},
     GrammarRow{"compiler", "compiler", "mujoco", kRead,

@@ -69,7 +69,7 @@ RobotMesh readMeshElement(const Reading& reading, const XmlElement& element) {
   mesh.triangles = file.empty() ? readInline(values) : readFile(element, mesh.file);
   mesh.triangles.source = file.empty() ? element.place() : mesh.file;
   place(values, mesh.triangles);
-  constexpr std::string_view kWords[] = {"convex", "legacy", "exact", "shell"};
+  constexpr std::string_view kWords[] = {"convex", "legacy", "exact", "shell"};  // by MeshInertia
   mesh.inertia = static_cast<MeshInertia>(values.oneOf("inertia", kWords, static_cast<int>(MeshInertia::kLegacy)));
   return mesh;
 }

@@ -15,7 +15,8 @@
 namespace pincer::tasks::mjcf {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kBlanks = " \t\r\n";  // between the numbers of an attribute
+// Ways to say how an element is turned; it may have one of them.
 constexpr std::array<std::string_view, 5> kOrientations = {"quat", "axisangle", "xyaxes", "zaxis", "euler"};
 constexpr double kShortest = 1e-14;  // of a direction: MuJoCo's least length
 
@@ -86,7 +87,7 @@ std::string Values::required(std::string_view name) const {
 }
 
 bool Values::boolean(std::string_view name, bool fallback) const {
-  constexpr std::string_view kWords[] = {"false", "true"};
+  constexpr std::string_view kWords[] = {"false", "true"};  // by value
   return oneOf(name, kWords, fallback) == 1;
 }
 
@@ -146,7 +147,7 @@ std::optional<Vec2> Values::range(std::string_view name) const {
 }
 
 std::optional<Vec2> Values::limits(std::string_view name, std::string_view switch_name, bool autolimits) const {
-  constexpr std::string_view kWords[] = {"false", "true", "auto"};
+  constexpr std::string_view kWords[] = {"false", "true", "auto"};  // by value; auto: as the range says
   const int limited = oneOf(switch_name, kWords, 2);
   const std::optional<Vec2> ends = range(name);
   if (ends && (*ends)[0] > (*ends)[1]) reject(name, "has its ends the wrong way round. The lesser comes first.");

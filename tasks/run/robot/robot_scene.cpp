@@ -148,7 +148,7 @@ bool isFloatingBase(const PosedRobot& posed, const RobotLink& link) {
   });
 }
 
-constexpr std::string_view kSlides[] = {"x", "y", "z"};
+constexpr std::string_view kSlides[] = {"x", "y", "z"};  // by axis of W
 
 // The body that the slider along an axis of W carries.
 const std::string& slideName(SceneWriting& w, const RobotBody& body, int axis) {
@@ -201,7 +201,7 @@ void writeTraits(SceneWriting& w, const RobotJoint& joint, double start) {
 }
 
 void writeJoint(SceneWriting& w, int index, std::size_t k, double start) {
-  constexpr std::string_view kTypes[] = {"pivot", "slider", "ball"};
+  constexpr std::string_view kTypes[] = {"pivot", "slider", "ball"};  // by kind of joint, as scenes call them
   const RobotBody& body = w.posed.body(index);
   const RobotJoint& joint = body.joints[k];
   const Pose X_WB = w.posed.poseAfter(index, k);

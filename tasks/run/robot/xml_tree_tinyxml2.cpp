@@ -10,6 +10,7 @@
 namespace pincer::tasks {
 namespace {
 
+// 16 MB: some hundred times a robot of a hundred links. Bounds the memory that a mistaken file takes.
 constexpr InputKind kXmlFile = {"a robot's XML file (docs/robots.md)", 16 * kMegabyte, true,
                                 "Robots of a hundred links have some 100 kB; meshes belong into files of their own."};
 

@@ -10,7 +10,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kNotSaid = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotSaid = std::numeric_limits<double>::quiet_NaN();  // NaN in a row: left as the scene has it
 
 // The first number decides: a place of which only a part is said has numbers that aren't finite, which the tick flags.
 template <class Row>

@@ -62,6 +62,7 @@ PairMoment pair(M m, I i) {
   return sum;
 }
 
+// Quantities: name in scenes, SI unit, how it is measured. Here of a joint.
 constexpr std::array kJoint = {
     QuantityKind{"position", "rad or m", position},
     QuantityKind{"velocity", "rad/s or m/s", velocity},
@@ -76,11 +77,13 @@ constexpr std::array kJoint = {
     QuantityKind{"moment_z", "N m", [](M m, I i) { return load(m, i).moment_J.z(); }},
 };
 
+// Of a drive.
 constexpr std::array kDrive = {
     QuantityKind{"force", "N m or N", [](M m, I i) { return drive(m, i).force; }},
     QuantityKind{"saturated", "-", [](M m, I i) { return drive(m, i).saturated ? 1.0 : 0.0; }},
 };
 
+// Of a frame, in W.
 constexpr std::array kFrame = {
     QuantityKind{"p_x", "m", [](M m, I i) { return frame(m, i).X_WF.p.x(); }},
     QuantityKind{"p_y", "m", [](M m, I i) { return frame(m, i).X_WF.p.y(); }},
@@ -97,6 +100,7 @@ constexpr std::array kFrame = {
     QuantityKind{"w_z", "rad/s", [](M m, I i) { return frame(m, i).w_W.z(); }},
 };
 
+// Of two bodies: force on the first.
 constexpr std::array kPair = {
     QuantityKind{"f_x", "N", [](M m, I i) { return pair(m, i).f_W.x(); }},
     QuantityKind{"f_y", "N", [](M m, I i) { return pair(m, i).f_W.y(); }},

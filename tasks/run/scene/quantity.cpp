@@ -21,6 +21,7 @@ const engine::PointState& proxy(M m, I i) { return m.state.world.points[i]; }
 const grasp::FingerReport& felt(M m, I i) { return m.fingers[i]; }
 Vec2 place(M m, I i) { return grasp::placeOnPad(m.model.fingers[i], felt(m, i).touch); }
 
+// Quantities: name in scenes, SI unit, how it is measured. Here of the whole world.
 constexpr std::array kWorld = {
     QuantityKind{"energy", "J",
                  [](M m, I) {
@@ -31,6 +32,7 @@ constexpr std::array kWorld = {
     QuantityKind{"potential_energy", "J", [](M m, I) { return engine::potentialEnergy(m.model.world, m.state.world); }},
 };
 
+// Of a body.
 constexpr std::array kBody = {
     QuantityKind{"p_x", "m", [](M m, I i) { return bodyPose(m, i).p.x(); }},
     QuantityKind{"p_y", "m", [](M m, I i) { return bodyPose(m, i).p.y(); }},
@@ -52,6 +54,7 @@ constexpr std::array kBody = {
     QuantityKind{"L_z", "kg m^2/s", [](M m, I i) { return body(m, i).L_W.z(); }},
 };
 
+// Of a finger.
 constexpr std::array kFinger = {
     QuantityKind{"p_x", "m", [](M m, I i) { return proxy(m, i).p_W.x(); }},
     QuantityKind{"p_y", "m", [](M m, I i) { return proxy(m, i).p_W.y(); }},

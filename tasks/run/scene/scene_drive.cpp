@@ -9,6 +9,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Numbers of a coupling's polynomial: as many as the engine's has.
 constexpr std::size_t kMostCoefficients = std::tuple_size_v<decltype(engine::CouplingModel::polynomial)>;
 
 // A joint that has one coordinate: a pivot or slider.

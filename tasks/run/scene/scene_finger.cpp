@@ -8,7 +8,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
+constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};  // by axis of the finger
 
 // One number for all axes, or [x, y, z].
 Vec3 readPerAxis(const JsonValue& json, const NumberRule& rule) {
@@ -83,7 +83,7 @@ void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
 }
 
 grasp::PressureGrid readTaxels(const JsonValue& json) {
-  constexpr int kFewestTaxels = 2, kMostTaxels = 64;
+  constexpr int kFewestTaxels = 2, kMostTaxels = 64;  // in a row or column; chosen: eight times a fingerpad's sensor
   json.allowOnly(keys::kTaxels);
   const auto count = [&](const char* key) {
     return json.at(key, "How many taxels that way.")

@@ -8,6 +8,7 @@ namespace pincer::tasks::keys {
 
 using Word = std::string_view;
 
+// Keys that each object of a scene may have, and words of its choices. A size counts them.
 inline constexpr std::array<Word, 19> kScene = {"version",  "description", "camera",    "gravity", "tick",
                                                 "duration", "solver",      "robots",    "bodies",  "combination",
                                                 "pairs",    "joints",      "couplings", "tendons", "drives",
@@ -76,8 +77,10 @@ inline constexpr std::array<Word, 3> kKeyframe = {"time", "position", "rotation"
 inline constexpr std::array<Word, 2> kRecord = {"interval", "quantities"};
 inline constexpr std::array<Word, 7> kExpectation = {"quantity",  "time",    "relation", "value",
                                                      "tolerance", "because", "hash"};
+// An expectation of the whole state's hash instead of a quantity.
 inline constexpr std::array<Word, 3> kHashExpectation = {"hash", "time", "because"};
 
+// Types of shape, then the keys of each.
 inline constexpr std::array<Word, 9> kShapeTypes = {"sphere",     "box",  "capsule", "cylinder", "cylinder_with_flat",
                                                     "half_space", "dish", "mesh",    "convex"};
 inline constexpr std::array<Word, 2> kSphere = {"type", "radius"};

@@ -11,7 +11,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr std::size_t kMostParts = 1024;  // of a body
-constexpr int kMostBits = 2147483647;
+constexpr int kMostBits = 2147483647;     // 2^31 - 1: 31 groups, what a signed 32-bit integer holds
 
 std::uint32_t readBits(const JsonValue& json, std::string_view key) {
   const JsonValue* bits = json.find(key);

@@ -18,6 +18,7 @@ constexpr double kFastestSpin = 1e4;                            // [rad/s]: a tu
 constexpr double kLightest = 1e-9, kHeaviest = 1e6;             // [kg]: a microgram, a ship
 constexpr double kLongestDuration = 1e6;                        // [s]: eleven days
 
+// Lengths and places [m], by the ends above; turns [rad]: 100 are 16 full ones; directions [-]; times [s].
 inline constexpr NumberRule kLength = {
     .min = kShortestLength, .max = kLongestLength, .remedy = "Lengths are in metres: 20 mm is 0.02."};
 inline constexpr NumberRule kTipLength = {
@@ -94,6 +95,7 @@ inline constexpr NumberRule kArmature = {
     .max = 1e6,
     .remedy = "In kg m^2 for a pivot, kg for a slider; of a geared motor n^2 times its rotor's.",
     .or_zero = true};
+// Couplings, tendons and drives; units by kind of joint and control. Chosen: wider than any use.
 inline constexpr NumberRule kCoefficient = {
     .min = -1e6, .max = 1e6, .remedy = "A number of the polynomial c0 + c1 q + c2 q^2 + .."};
 inline constexpr NumberRule kTendonShare = {
@@ -121,16 +123,19 @@ inline constexpr NumberRule kTwist = {.min = 1e-9,
                                       .max = 1e3,
                                       .remedy = "In N m/rad or N m s/rad; a fingertip has about 0.3 and 0.001.",
                                       .or_zero = true};
+// Stiffness and damping of turning [N m/rad, N m s/rad]; stiffer than a fingertip's twist, as grippers are.
 inline constexpr NumberRule kTurn = {.min = 1e-6,
                                      .max = 1e6,
                                      .remedy = "In N m/rad or N m s/rad; a gripper's finger has about 50 and 0.05.",
                                      .or_zero = true};
+// Pads: lengths [m] up to a hand's, modulus [Pa] up to diamond's.
 inline constexpr NumberRule kTaxelPitch = {.min = 1e-5, .max = 0.1, .remedy = "In metres; 0.002 is usual."};
 inline constexpr NumberRule kPatch = {
     .min = kShortestLength, .max = 0.1, .remedy = "In metres; a fingertip's patch has 0.004 to 0.006."};
 inline constexpr NumberRule kModulus = {.min = 100, .max = 1e12, .remedy = "In pascals; a fingertip has about 1e5."};
 inline constexpr NumberRule kEffectiveRadius = {
     .min = kShortestLength, .max = 10, .remedy = "In metres; the tip's own when missing."};
+// Arms [kg], and forces on them [N].
 inline constexpr NumberRule kArmMass = {.min = 1e-4, .max = 100, .remedy = "In kilograms, at the tip."};
 inline constexpr NumberRule kForce = {.min = -1e4, .max = 1e4, .remedy = "In newtons."};
 

@@ -53,7 +53,7 @@ Quantity find(const std::string& text, std::span<const QuantityKind> kinds, std:
   return {text, kind, index};
 }
 
-constexpr std::string_view kPressure = "pressure";
+constexpr std::string_view kPressure = "pressure";  // of a taxel: begins "pressure_2_5"
 
 // "pressure_2_5": the taxel in row 2, column 5, from 0.
 Quantity findTaxel(const std::string& text, std::string_view word, const SceneFinger& finger, std::size_t index,
@@ -84,7 +84,7 @@ Quantity findOfFinger(const std::string& text, std::string_view word, const Scen
   return find(text, fingerQuantities(), word, index, reject);
 }
 
-constexpr char kTouching = '|';
+constexpr char kTouching = '|';  // between the names of two bodies
 
 // "cube|left.f_x": of what touches between two bodies, on the first.
 Quantity findOfPair(const std::string& text, std::string_view owner, std::string_view word, const Scene& scene,
@@ -195,7 +195,7 @@ Recording readRecording(const JsonValue& json, const Scene& scene) {
 
 namespace {
 
-constexpr QuantityKind kHashKind{"hash", "", nullptr};
+constexpr QuantityKind kHashKind{"hash", "", nullptr};  // of no unit and nothing measured: the whole state's
 
 // "" stands for one that hasn't been taken yet.
 void readHash(const JsonValue& json, Expectation& expectation) {

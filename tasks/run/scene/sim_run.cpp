@@ -28,7 +28,7 @@ class CsvRecorder {
     table_.add(time);
     for (const Quantity& quantity : record_.quantities) table_.add(quantity.measure(moment));
     table_.endRow();
-    constexpr std::size_t kBlock = 1 << 16;
+    constexpr std::size_t kBlock = 1 << 16;  // [bytes] that are written at once; chosen
     if (table_.text().size() <= kBlock) return;
     file_->write(table_.text());
     table_ = {};

@@ -15,6 +15,7 @@ struct StatusKind {
   const char* sentence;  // what happened, and what to change
 };
 
+// By bit of engine::StepStatus.
 constexpr std::array<StatusKind, 8> kStatusKinds = {{
     {engine::kSolverNotConverged, "solver_not_converged",
      "the contact solver stopped before its tolerance; its impulses are safe, but not exact. Loosen solver.tolerance, "

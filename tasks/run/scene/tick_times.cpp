@@ -7,7 +7,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::int64_t kMostKept = 1'000'000;
+constexpr std::int64_t kMostKept = 1'000'000;  // times, 8 MB: of longer runs every so many ticks one is kept
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 namespace pincer::tasks {
 namespace {
 
+// [m, rad]: wider than any desk and than a full turn; chosen.
 constexpr NumberRule kCalibrationRule = {.min = -10, .max = 10, .remedy = "Lengths are in metres, angles in radians."};
 
 }  // namespace
@@ -26,7 +27,7 @@ ArmBase armBaseIn(const DeviceCalibration& calibration) {
 
 DeviceCalibration readCalibration(const std::string& path) {
   const JsonValue json = readJson(path, kCalibrationFile);
-  constexpr std::array<std::string_view, 2> kKeys{"device", "values"};
+  constexpr std::array<std::string_view, 2> kKeys{"device", "values"};  // of a calibration's file
   json.allowOnly(kKeys);
   DeviceCalibration calibration;
   calibration.serial = json.at("device", "The serial number: pincer devices list").text();

@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 
 DeviceChoice deviceChoiceOf(const std::string& name) {
-  constexpr std::array kNames{"sim", "usb", "falcon", "haply", "mouse", "replay"};
+  constexpr std::array kNames{"sim", "usb", "falcon", "haply", "mouse", "replay"};  // by DeviceChoice
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (name == kNames[i]) return static_cast<DeviceChoice>(i);
   }

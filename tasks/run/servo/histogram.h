@@ -40,7 +40,7 @@ class Histogram {
   }
 
  private:
-  static constexpr int kBins = 8 * 34;
+  static constexpr int kBins = 8 * 34;  // 8 per octave from 1 ns, 34 octaves: to 17 s, 9 % apart
   static int binOf(double seconds) {
     if (!(seconds > 1e-9)) return 0;
     return static_cast<int>(std::min(kBins - 1.0, 8 * math::log2(seconds * 1e9)));

@@ -119,6 +119,7 @@ class ReplayRecording {
     points.push_back(point);
   }
   void readTable(const std::string& path, int fingers) {
+    // The size of a recording's file bounds this table too [bytes].
     constexpr InputKind kTable = {"a CSV file of samples", kRecordingFile.most_bytes, true, kRecordingFile.remedy};
     InputFile file(path, kTable);
     std::string_view line;

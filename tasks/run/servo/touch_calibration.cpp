@@ -17,9 +17,9 @@ namespace {
 using Unknowns = Eigen::Matrix<double, 5, 1>;  // psi, t, d
 using Normal = Eigen::Matrix<double, 5, 5>;
 
-constexpr int kMostSteps = 60;
-constexpr double kEnough = 1e-12;                            // of a step [rad, m]
-constexpr double kStartDistance = 0.02;                      // [m]
+constexpr int kMostSteps = 60;           // of Gauss and Newton: ends a search that doesn't converge; chosen
+constexpr double kEnough = 1e-12;        // of a step [rad, m]
+constexpr double kStartDistance = 0.02;  // [m]
 constexpr double kStartTurns[] = {0, -0.3, 0.3, -0.6, 0.6};  // a session takes bases within 30 degrees [rad]
 constexpr double kMostResidual = 1e-3;                       // the handles weren't together [m]
 constexpr double kMostOffsetError = 0.5e-3, kMostTurnError = 0.2 * std::numbers::pi / 180;  // [m], [rad]

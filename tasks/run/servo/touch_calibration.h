@@ -19,7 +19,7 @@ struct HandleTouch {
   Vec3 a_W, b_W;  // the handles' middles [m]
 };
 
-constexpr std::size_t kFewestTouches = 8;
+constexpr std::size_t kFewestTouches = 8;  // the five unknowns, and three more by which a wrong place shows
 
 struct TouchFinding {
   ArmBase base;            // of B

@@ -12,6 +12,7 @@
 namespace pincer::tasks {
 namespace {
 
+// Levels that several columns share.
 constexpr std::string_view kNoYes = "0=no;1=yes";
 constexpr std::string_view kConditions =
     "force=force only: the tactors stay parked;cld+force=contact location display and force";
@@ -21,6 +22,7 @@ struct DescribedQuantity {
   std::string_view table, name, description, levels = {};
 };
 
+// By table and name; a quantity that its table doesn't describe has the row of any table.
 constexpr std::array kQuantities = {
     DescribedQuantity{"", "trial", "trial of the session, from 1"},
     DescribedQuantity{"", "participant", "participant, from 1; sub-NN in BIDS"},
@@ -186,6 +188,7 @@ std::vector<std::pair<std::string, std::string>> levelsOf(std::string_view text)
 }
 
 std::string unitFor(std::string_view unit) {
+  // The ending of a column's name, and the unit as it is shown; "": none.
   constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kUnits = {{{"m_per_s", "m/s"},
                                                                                     {"m_per_rad", "m/rad"},
                                                                                     {"Ns_per_m", "N s/m"},
@@ -228,6 +231,7 @@ ColumnMeaning meaningOf(std::string_view table, const ColumnName& column) {
 }
 
 int countsFrom(const ColumnName& column) {
+  // Quantities that count from 1; all others begin at 0.
   constexpr std::array<std::string_view, 5> kCounted = {"trial", "participant", "run", "place_in_order",
                                                         "place_in_run"};
   return std::find(kCounted.begin(), kCounted.end(), column.quantity) != kCounted.end() ? 1 : 0;

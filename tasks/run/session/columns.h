@@ -32,20 +32,21 @@ struct ColumnRange {
 };
 
 namespace columns {
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();  // no end
 constexpr double kLargestCount = 9007199254740992;  // 2^53, up to which doubles count exactly; 285,000 years of ticks
-constexpr ColumnRange kAny{-kInfinity, kInfinity, true};
-constexpr ColumnRange kCount{0, kLargestCount};
-constexpr ColumnRange kYesNo{0, 1};
-constexpr ColumnRange kTime{0, 1e9};                 // [s]; 30 years
-constexpr ColumnRange kMeasuredTime{0, 1e12, true};  // [s] or [us], where it was measured
-constexpr ColumnRange kClock{-1e12, 1e12};           // [s]; a session's clock begins at 0, a device's where it likes
-constexpr ColumnRange kFriction{0, 1e6};
-constexpr ColumnRange kLevel{-1e12, 1e12, true};
-constexpr ColumnRange kLength{1, kLargestCount};
-constexpr ColumnRange kPlace{-1e6, 1e6};    // [m]
-constexpr ColumnRange kCapability{0, 1e6};  // of an arm
-constexpr ColumnRange kCapabilityOrNone{0, 1e6, true};
+constexpr ColumnRange kAny{-kInfinity, kInfinity, true};  // a measured number: a session keeps what happened
+constexpr ColumnRange kCount{0, kLargestCount};           // of what is counted
+constexpr ColumnRange kYesNo{0, 1};                       // 0: no, 1: yes
+constexpr ColumnRange kTime{0, 1e9};                      // [s]; 30 years
+constexpr ColumnRange kMeasuredTime{0, 1e12, true};       // [s] or [us], where it was measured
+constexpr ColumnRange kClock{-1e12, 1e12};  // [s]; a session's clock begins at 0, a device's where it likes
+constexpr ColumnRange kFriction{0, 1e6};    // [-]; chosen: far above any material's
+constexpr ColumnRange kLevel{-1e12, 1e12,
+                             true};  // in the study's unit; no infinities: levels are sorted and divided by
+constexpr ColumnRange kLength{1, kLargestCount};        // of a sequence: at least one
+constexpr ColumnRange kPlace{-1e6, 1e6};                // [m]
+constexpr ColumnRange kCapability{0, 1e6};              // of an arm
+constexpr ColumnRange kCapabilityOrNone{0, 1e6, true};  // likewise; NaN: it doesn't tell
 // of HandPhase and devices::Trip (experiments/hand_records.cpp compares them)
 constexpr double kLastPhase = 9, kLastTrip = 8;
 }  // namespace columns
@@ -82,6 +83,7 @@ template <class R, class Record>
 concept RecordOf = std::same_as<std::remove_const_t<R>, Record>;
 
 namespace columns {
+// Endings of columns: by axis of a vector (a fourth number has none), and by part of a quaternion.
 constexpr std::array<std::string_view, 4> kAxes{"x", "y", "z", ""};
 constexpr std::array<std::string_view, 4> kQuaternion{"w", "x", "y", "z"};
 
@@ -108,7 +110,7 @@ void finger(std::string_view f, R& r, Visit& visit) {
 
 template <RecordOf<SampleRecord> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
-  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
+  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};  // index finger, thumb
   visit(ColumnName{"", "trial", "", ""}, r.trial);
   visit(ColumnName{"", "tick", "", ""}, r.tick);
   visit(ColumnName{"", "time", "", "s", columns::kClock}, r.time);
@@ -122,7 +124,7 @@ void forEachColumn(R& r, Visit&& visit) {
 
 template <RecordOf<HandsRecord> R, class Visit>
 void forEachColumn(R& r, Visit&& visit) {
-  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
+  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};  // index finger, thumb
   visit(ColumnName{"", "trial", "", ""}, r.trial);
   for (std::size_t i = 0; i < r.fingers.size(); ++i) {
     auto& finger = r.fingers[i];
@@ -141,6 +143,7 @@ void forEachColumn(R& r, Visit&& visit) {
 namespace columns {
 template <RecordOf<FingerInputRecord> R, class Visit>
 constexpr void fingerInput(std::string_view f, R& r, Visit& visit) {
+  // Row and column of J, column by column, as Eigen stores it.
   constexpr std::array<std::string_view, 9> kEntries{"11", "21", "31", "12", "22", "32", "13", "23", "33"};
   visit(ColumnName{f, "input_flags", "", ""}, r.flags);
   visit(ColumnName{f, "switches", "", ""}, r.switches);
@@ -158,7 +161,7 @@ constexpr void fingerInput(std::string_view f, R& r, Visit& visit) {
 
 template <RecordOf<InputRecord> R, class Visit>
 constexpr void forEachColumn(R& r, Visit&& visit) {
-  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};
+  constexpr std::array<std::string_view, kRecordedFingers> kFingers{"f0", "f1"};  // index finger, thumb
   visit(ColumnName{"", "trial", "", ""}, r.trial);
   visit(ColumnName{"", "tick", "", ""}, r.tick);
   visit(ColumnName{"", "time", "", "s", columns::kClock}, r.time);

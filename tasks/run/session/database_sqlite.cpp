@@ -23,6 +23,7 @@ struct Remedy {
   const char* text;
 };
 
+// By SQLite's primary result code; others have no remedy.
 constexpr Remedy kRemedies[] = {
     {SQLITE_FULL, "The disk (or quota) is full. Free some space or choose another disk."},
     {SQLITE_IOERR, "The disk or network share reports an error. Check it, or choose a local disk."},
@@ -122,7 +123,7 @@ void distrust(sqlite3* d) {
 // A program that was killed between the two halves of a change leaves a journal, which undoes the first half. Only who
 // may write can do so; of anything else that is wrong the reader tells.
 void undoTornWrite(sqlite3* reader, const std::string& path) {
-  constexpr const char* kRead = "PRAGMA user_version";
+  constexpr const char* kRead = "PRAGMA user_version";  // the least that reads the file
   if (sqlite3_exec(reader, kRead, nullptr, nullptr, nullptr) != SQLITE_READONLY_ROLLBACK) return;
   sqlite3* writer = nullptr;
   if (sqlite3_open_v2(path.c_str(), &writer, SQLITE_OPEN_READWRITE, nullptr) == SQLITE_OK) {

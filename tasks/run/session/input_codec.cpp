@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::size_t kMaskBytes = (kInputWords + 7) / 8;
+constexpr std::size_t kMaskBytes = (kInputWords + 7) / 8;  // a bit per word: it changed
 
 void packWord(std::uint64_t word, std::string& bytes) {
   PINCER_ASSERT(word != 0);  // only what changed is written

@@ -19,6 +19,7 @@
 
 namespace pincer::tasks {
 
+// Words of 64 bits in one tick's inputs: a word per column.
 constexpr std::size_t kInputWords = [] {
   std::size_t words = 0;
   const InputRecord record{};

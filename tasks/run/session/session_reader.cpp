@@ -172,7 +172,7 @@ std::vector<ReadingRecord> SessionReader::readings(std::optional<std::int64_t> t
 }
 
 std::vector<SurveyRecord> SessionReader::survey() const {
-  constexpr std::int64_t kFirstWithSurvey = 6;
+  constexpr std::int64_t kFirstWithSurvey = 6;  // format that brought the table
   return format_ >= kFirstWithSurvey ? readAll<SurveyRecord>(*database_, format_) : std::vector<SurveyRecord>();
 }
 

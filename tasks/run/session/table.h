@@ -30,6 +30,7 @@ constexpr std::int64_t kOldestFormat =
     2;  // that is still read: it lacks the tables hands, input and survey; ColumnName::since has the rest
 constexpr std::int64_t kFirstLockedFormat = 5;  // whose writers hold a lock (session_lock.h)
 
+// States of a session in its table; after "aborted: " stands the reason.
 constexpr std::string_view kStateRunning = "running", kStateComplete = "complete", kStateAborted = "aborted: ";
 
 template <class Record>

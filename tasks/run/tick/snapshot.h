@@ -68,9 +68,9 @@ struct Snapshot {
   std::vector<FingerSnapshot> fingers;
   std::vector<ContactSnapshot> contacts;  // the first contact_count count
   int contact_count = 0;
-  std::vector<double> drive_forces;  // of every drive of a joint [N, N m]
-  static constexpr int kAllBodies = -2;
-  int hidden_body = -1;  // that isn't there at present, or kAllBodies; -1: all are there
+  std::vector<double> drive_forces;      // of every drive of a joint [N, N m]
+  static constexpr int kAllBodies = -2;  // bodies count from 0, and -1 means none
+  int hidden_body = -1;                  // that isn't there at present, or kAllBodies; -1: all are there
   TrialSnapshot trial;
 
   // Sized for `model`.

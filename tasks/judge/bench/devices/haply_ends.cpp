@@ -22,7 +22,7 @@ namespace {
 using devices::emulate::DeadMan;
 using devices::emulate::HaplyServer;
 
-constexpr int kDeaths = 3;
+constexpr int kDeaths = 3;          // per signal, odd for a median; few, since each begins and ends a process
 constexpr double kIdleAfter = 100;  // of the service that has a deadline of its own [ms]
 
 void pauseMs(double ms) { std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms)); }

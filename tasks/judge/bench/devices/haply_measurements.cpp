@@ -96,7 +96,7 @@ double readingTime() {
   std::string text;
   service.connected(text);
   devices::haply::ServiceMessage message;
-  constexpr int kReadings = 2000;
+  constexpr int kReadings = 2000;  // texts that the mean is taken over: a tenth of a second; chosen
   const std::int64_t begin = threadNs();
   for (int i = 0; i < kReadings; ++i) readService(text, message);
   return 1e-3 * static_cast<double>(threadNs() - begin) / kReadings;
@@ -127,7 +127,7 @@ class Throws final : public ServoCycle {
  public:
   explicit Throws(HaplyHost& host) : host_(host) {}
   bool tick(double) override {
-    constexpr int kPushes = 50;
+    constexpr int kPushes = 50;  // [ticks] of 1 ms; chosen
     host_.arm(0).commandForce(kPush);
     if (++ticks_ < kPushes) return true;
     thrown = devices::usb::monotonicNs();
@@ -245,6 +245,7 @@ std::vector<Record> connections(MeasureContext& context, int cycles) {
 }
 
 enum class Phase { kConnect, kSettle, kStream, kPush, kClose };
+// All of them, in the order of a run.
 constexpr std::array kPhases{Phase::kConnect, Phase::kSettle, Phase::kStream, Phase::kPush, Phase::kClose};
 
 struct FaultCounts {

@@ -16,8 +16,8 @@ namespace {
 using devices::haply::DeviceReport;
 using devices::haply::ServiceMessage;
 
-constexpr std::int64_t kUsual = 20'000, kThorough = 10'000'000;
-constexpr std::size_t kMostChanges = 7;
+constexpr std::int64_t kUsual = 20'000, kThorough = 10'000'000;  // texts, the second with --long; chosen
+constexpr std::size_t kMostChanges = 7;                          // of a text at most; chosen
 
 bool isSound(const DeviceReport& device) {
   const auto within = [](const std::optional<Vec3>& v, double most) {

@@ -16,8 +16,8 @@ namespace {
 using devices::emulate::WeartMiddleware;
 using devices::weart::WeartHost;
 
-constexpr int kPresses = 21;
-constexpr const char* kIndex = "RIGHT:INDEX";
+constexpr int kPresses = 21;                   // odd for their median; chosen
+constexpr const char* kIndex = "RIGHT:INDEX";  // the middleware's name of the right hand's index finger
 
 // From a new force to its level, and from the last force to zero: medians of kPresses [ms].
 std::vector<Record> pressures(MeasureContext& context) {

@@ -78,6 +78,7 @@ class WorldMaker {
 }  // namespace
 
 FamilyWorld wallWorld(const WallSpec& spec) {
+  // Of a brick, and between two [m]; [kg].
   constexpr double kLength = 0.04, kWidth = 0.02, kHeight = 0.02, kApart = 1e-3, kMass = 0.05;
   const Quat q = quatFromRotationVector(spec.heading * Vec3::UnitZ());
   Uniform uniform(spec.seed);
@@ -100,7 +101,7 @@ FamilyWorld wallWorld(const WallSpec& spec) {
 }
 
 FamilyWorld hullWorld(int hulls, std::uint64_t seed) {
-  constexpr int kCorners = 20, kPerRow = 3;
+  constexpr int kCorners = 20, kPerRow = 3;  // points that a hull is made of, chosen; hulls side by side in the crate
   constexpr double kSpacing = 0.038, kDensity = 1000, kFilled = 0.7;  // of the ellipsoid's volume, about
   Uniform uniform(seed);
   WorldMaker maker(0.5, false);

@@ -22,6 +22,7 @@ BenchVerdict angleFrom(const Quat& exact, double spin, BenchEngine& engine) {
 }
 
 constexpr double kBoxMass = 0.1;  // [kg]
+// Half sides [m]; spin [rad/s], nearly about the axis of the middle moment, where it tumbles.
 const Vec3 kBoxHalf(0.01, 0.02, 0.04), kBoxSpin(0.02, 20, 0.02);
 
 BenchWorld tumblingWorld(const Vec3& half, const Vec3& w) {

@@ -32,7 +32,7 @@ struct Peaks {
 
 BenchScene bounceScene() {
   constexpr double kRestitution = 0.8;  // [-]
-  constexpr int kBounces = 5;
+  constexpr int kBounces = 5;           // whose heights are compared, as the metric says
   BenchScene s{.name = "s7/bounce-0.8",
                .metric = "height of 5 bounces, largest relative error",
                .unit = "-",

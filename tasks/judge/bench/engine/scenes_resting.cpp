@@ -65,7 +65,7 @@ BenchScene ratioScene(const std::string& name, const std::vector<double>& masses
 
 // How far any cube of ten moves after the first second.
 BenchScene columnScene() {
-  constexpr int kCubes = 10;
+  constexpr int kCubes = 10;  // the stack of ten
   BenchScene s{.name = "more/stack-of-ten",
                .metric = "moved from 1 to 5 s, largest",
                .unit = "um",

@@ -10,7 +10,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kBenchSlope = 20 * kDegree;
+constexpr double kBenchSlope = 20 * kDegree;  // [rad]; chosen: friction is given as a share of its tangent
 
 // Error over the whole way of the body 1, off `exact`; a way less than half or more
 // than twice as long isn't the scene's motion.

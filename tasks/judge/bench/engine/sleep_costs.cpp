@@ -9,7 +9,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kComingToRest = 200, kTimedTicks = 200;
+constexpr int kComingToRest = 200, kTimedTicks = 200;  // [ticks] before the clock runs, and timed; chosen
 
 class RestingBoxes {
  public:
@@ -36,7 +36,7 @@ class RestingBoxes {
     return builder.build();
   }
   static engine::WorldState startOf(const engine::WorldModel& model) {
-    constexpr int kPerRow = 10;
+    constexpr int kPerRow = 10;      // boxes of a row, kApart from each other
     constexpr double kApart = 0.05;  // [m]
     std::vector<engine::BodyStart> starts(1);
     for (int i = 0; i + 1 < static_cast<int>(model.bodies.size()); ++i)

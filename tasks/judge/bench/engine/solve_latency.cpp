@@ -14,6 +14,7 @@
 namespace pincer::tasks {
 namespace {
 
+// [ticks]: left out at the start; then 20 s, of which 20 ticks lie above 99.9 %.
 constexpr int kWarmTicks = 500, kSolveTicks = 20000;
 constexpr double kSolvedBall = 0.02, kSolvedTip = 8e-3;  // radii [m]
 

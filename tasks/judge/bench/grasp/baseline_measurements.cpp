@@ -16,6 +16,7 @@ namespace {
 
 using grasp::FingerMethod;
 
+// All methods of a finger, pincer's own first.
 constexpr std::array<FingerMethod, 5> kMethods = {FingerMethod::kProxy, FingerMethod::kFrictionCone,
                                                   FingerMethod::kForceShading, FingerMethod::kGodObject,
                                                   FingerMethod::kPenalty};

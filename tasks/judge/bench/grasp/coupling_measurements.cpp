@@ -169,6 +169,7 @@ void plotMap(const std::string& directory, const std::vector<MapRow>& rows) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) throw InputError(fmt::format("--out {}: can't make this directory: {}.", directory, error.message()));
+  // Colours of the lines, by mass.
   constexpr std::array<const char*, 4> kColours = {palette::kBlue, palette::kGreen, palette::kOrange,
                                                    palette::kVermillion};
   Figure figure;

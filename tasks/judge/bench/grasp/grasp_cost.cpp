@@ -143,7 +143,7 @@ std::vector<Record> padsCost(MeasureContext&) {
 // `n` balls 200 mm apart in rows of 32, each between two spheres; all sway, so that none sleeps.
 double costPerPinch(int n) {
   constexpr double kApart = 0.2;  // [m]
-  constexpr int kPerRow = 32;
+  constexpr int kPerRow = 32;     // pinches of a row, kApart from each other
   engine::WorldOptions options = benchWorld(true);
   options.max_contacts = 16384;
   engine::WorldBuilder builder(options);

@@ -176,7 +176,7 @@ struct NoisyHold {
 };
 
 NoisyHold holdInNoise(const contact::Shape& shape, double twist_stiffness, MeasureContext& context) {
-  constexpr int kSecond = 1000, kSeconds = 60;
+  constexpr int kSecond = 1000, kSeconds = 60;  // [ticks]: the noise repeats each second; [s]: a minute
   RingGrasp ring(2, shape, 0.5, 3.3e-3, twist_stiffness);
   const std::vector<Vec3> places = RingGrasp::devices(ring.around, 2e-3);
   Random random(11);

@@ -63,7 +63,7 @@ std::vector<Record> limitSurface(MeasureContext&) {
 
 // The onset, from rest: a twist spring of 0.2 N m/rad is wound up by a device that turns by microradians per tick.
 std::vector<Record> twistOnset(MeasureContext&) {
-  constexpr double kPadTwist = 0.2;
+  constexpr double kPadTwist = 0.2;  // [N m/rad]: about a fingertip's, 0.3
   const grasp::SoftPad pad{.patch_radius = 5e-3};
   BenchGrasp grasp = softOnPlate(pad, kPadTwist);
   grasp.leadAll({Vec3(0, 0, kBenchTip - 2e-3)}, 100);
