@@ -1,5 +1,5 @@
 // Makes one HTML file of the page's parts: styles, the program with three.js in it, and the licence of what isn't ours.
-// node bundle.mjs OUT.html [NAME]      of NAME.js, NAME.html and NAME.css; replay if it isn't said
+// node bundle.mjs OUT.html [NAME]      of NAME.js, NAME.html, look.css and NAME.css; replay if it isn't said
 import { readFileSync, writeFileSync } from "node:fs";
 import { build } from "esbuild";
 
@@ -17,7 +17,7 @@ const result = await build({
 });
 const licence = "three.js (https://threejs.org)\n\n" + readFileSync("node_modules/three/LICENSE", "utf8");
 const parts = {
-  "{{style}}": readFileSync(`${name}.css`, "utf8"),
+  "{{style}}": readFileSync("look.css", "utf8") + readFileSync(`${name}.css`, "utf8"),
   "{{program}}": result.outputFiles[0].text,
   "{{licence}}": licence.replace(/[&<>]|[^\x00-\x7f]/gu, (c) => `&#${c.codePointAt(0)};`),
 };
