@@ -54,17 +54,24 @@ std::span<const int> contactsOf(const WorldScratch& scratch, const Island& islan
   return {scratch.islands.order.data() + island.place, static_cast<std::size_t>(island.contacts)};
 }
 
+// R of a body that turns by `w_W`: its reach from that axis, at most twice its radius of gyration about it (a thin
+// rod's is 3^1/2 times that). A rod that spins about itself reaches no further than it is thick. [m]
+double reachOf(const BodyModel& body, const BodyScratch& s, const Vec3& w_W) {
+  const double moment = w_W.dot(s.inverse_inertia_W.inverse() * w_W) / w_W.squaredNorm();
+  return std::min(body.bounding_radius, 2 * std::sqrt(moment * body.inverse_mass));
+}
+
 // Share of the island's impulses with which this body of it doesn't turn too fast.
 double shareOfTurn(const WorldModel& model, const WorldScratch& scratch, const Island& island, int body) {
   constexpr double kFewTimes = 10, kSlow = 0.02;  // [-, rad in a tick]
-  const double start = scratch.bodies[body].start.w_W.norm(), h = model.options.h,
-               end = endAngularVelocity(model, scratch, body).norm();
+  const Vec3 w_end_W = endAngularVelocity(model, scratch, body);
+  const double start = scratch.bodies[body].start.w_W.norm(), h = model.options.h, end = w_end_W.norm();
   if (!(end > start) || end * h < kSlow) return 1;
   double fastest = 0;
   for (const int i : contactsOf(scratch, island)) {
     if (touches(scratch.contacts[i], body)) fastest = std::max(fastest, speedAgainst(scratch.contacts[i], body));
   }
-  const double reach = model.bodies[body].bounding_radius;
+  const double reach = reachOf(model.bodies[body], scratch.bodies[body], w_end_W);
   const double most = std::max({start, std::sqrt(2 * fastest / (h * reach)), kFewTimes * fastest / reach});
   if (end <= most) return 1;
   const double free = scratch.bodies[body].free.w_W.norm();

@@ -34,7 +34,7 @@ void limitEnergy(const WorldModel& model, const WorldScratch& scratch, double mo
 // Scales the impulses of islands in which what is driven would turn a body faster than its push can last:
 //
 //   w+ <= max(w-, sqrt(2 g/(h R)), 10 g/R)     g  speed of what touches the body, and of pushing out an overlap [m/s]
-//                                              R  how far the body reaches [m];   h  tick [s]
+//                                              R  its reach from the axis [m];   h  tick [s]
 //
 // A push at the arm a turns a body at g/a, and that turn changes the arm by R w h within the tick: shorter ones than
 // a = (g h R/2)^1/2 are none. A lever that a plate pushes over its own hinge would turn at any speed, and a jammed one
