@@ -211,8 +211,8 @@ TEST(Jaws, APlateThatPassesAHingeSpinsNoProp) {
   }
 }
 
-// A thin rod across a belt spins about itself at up to 300 rad/s, where sqrt(2 g/(h R)) is 122 with half its length as R:
-// it was held back, and sank into the belt.
+// A thin rod across a belt spins about itself at up to 300 rad/s, where sqrt(2 g/(h R)) is 122 with half its length as
+// R: it was held back, and sank into the belt.
 TEST(Jaws, ABeltRollsAThinRod) {
   constexpr double kRadius = 5e-3, kSpeed = 1.5, kTick = 1e-3;
   WorldBuilder builder(WorldOptions{});
