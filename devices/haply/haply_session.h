@@ -101,6 +101,7 @@ class HaplySession {
     std::int64_t test_began = 0;
     std::int64_t echo_ns = 0;         // no older than this is the echo [ns]
     std::int64_t pushing_since = -1;  // of an unbroken run of forces [ns]
+    std::int64_t deaf_since = -1;     // nothing of a force comes back since [ns]
     std::int64_t still_since = 0;     // the place is equal to the bit since, or since the force changed [ns]
     Vec3 f_when_still = Vec3::Zero();
     bool pushed_when_still = false;

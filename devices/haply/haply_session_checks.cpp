@@ -16,6 +16,8 @@ constexpr std::int64_t kFrozenAfter = 500 * kMillisecond;  // a place that is eq
 constexpr double kFrozenForce = 0.5;                       // although the force changed by this [N]
 constexpr double kEchoOver = 0.2, kEchoOverShare = 0.05;   // the echo may be above what was sent by [N], and of it [-]
 constexpr double kAttenuated = 0.8;                        // an echo below this share of what was sent is counted
+constexpr double kDeaf = 0.1;                              // below this share the arm does nothing of what is sent
+constexpr std::int64_t kDeafMayLast = 250 * kMillisecond;  // a filter damps what changes sign for less; chosen
 constexpr std::int64_t kConfigureMayLast = 500 * kMillisecond;  // until the arm's settings are those asked for
 
 // Names of events that put a session in doubt: safety, and a lost device.
@@ -149,6 +151,13 @@ void HaplySession::checkForce(ArmState& arm, const DeviceReport& report) {
   }
   const bool steady = arm.pushing_since >= 0 && then - arm.pushing_since > kEchoMemory && arm.test == Echo::kGood;
   if (steady && echo < kAttenuated * most - kEchoOver) ++counts_.attenuated;
+  arm.deaf_since = !steady || echo >= kDeaf * most ? -1 : arm.deaf_since < 0 ? then : arm.deaf_since;
+  if (arm.deaf_since >= 0 && then - arm.deaf_since > kDeafMayLast)
+    doubt(
+        fmt::format("Inverse3 {} renders nothing of the {:.2f} N that it is sent: an arm that is deaf to a force may "
+                    "be deaf to a zero. Switch it off and on, look at its light; its force gate may swallow what "
+                    "changes sign: --force-gate GAIN.",
+                    report.id.view(), most));
   if (arm.pushing_since >= 0 && then - arm.pushing_since > kIdleMayLast && report.mode.view() == "idle")
     doubt(fmt::format("Inverse3 {} stays idle although forces are sent. Switch it off and on.", report.id.view()));
 }

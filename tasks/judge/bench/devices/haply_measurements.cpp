@@ -102,18 +102,42 @@ double readingTime() {
   return 1e-3 * static_cast<double>(threadNs() - begin) / kReadings;
 }
 
+// A servo with nothing to do: the ticks that it misses are the machine's.
+class Idles final : public ServoCycle {
+ public:
+  explicit Idles(double seconds) : seconds_(seconds) {}
+  bool tick(double now) override { return now < seconds_; }
+  void cutForces() noexcept override {}
+
+ private:
+  double seconds_;
+};
+
+// Ticks of 1 kHz that the clock didn't wait for [%].
+double missedIn(ServoCycle& cycle) {
+  const ServoReport report = runServo({.clock = ServoClock::kReal, .watchdog = 1}, cycle, std::atomic<bool>(false));
+  const auto due = static_cast<double>(std::max<std::int64_t>(1, report.ticks + report.missed));
+  return 100 * static_cast<double>(report.missed) / due;
+}
+
 std::vector<Record> streaming(double seconds) {
   HaplyServer server;
   HaplyHost host(bothArmsOf(server));
   host.waitReady(10);
   for (std::size_t i = 0; i < 2; ++i) host.arm(i).arm();
   BothArms cycle(host, seconds);
-  const ServoReport report = runServo({.clock = ServoClock::kReal, .watchdog = 1}, cycle, std::atomic<bool>(false));
+  double missed_idle = 0;
+  std::thread beside([&] {
+    Idles idles(seconds);
+    missed_idle = missedIn(idles);
+  });
+  const double missed = missedIn(cycle);
+  beside.join();
   cycle.cutForces();
-  const double due = static_cast<double>(std::max<std::int64_t>(1, report.ticks + report.missed));
   return {atMost("round trip of two arms, median", tripQuantile(host.roundTrips(), 0.5), "ms", 0.15),
           unbounded("round trip, 99.9 %", tripQuantile(host.roundTrips(), 0.999), "ms"),
-          unbounded("ticks missed, of 1 kHz", 100 * static_cast<double>(report.missed) / due, "%"),
+          unbounded("ticks missed, of 1 kHz", missed, "%"),
+          unbounded("ticks missed by a loop beside it that does nothing", missed_idle, "%"),
           unbounded("ticks with a sample", 100 * cycle.validShare(), "%"),
           exactly("answers that weren't sound", static_cast<double>(host.counts().unsound), "-", 0),
           atMost("reading 2 kB", readingTime(), "us", 60)};
@@ -219,14 +243,14 @@ std::ptrdiff_t entriesIn(const char* folder) {
 std::vector<Record> connections(MeasureContext& context, int cycles) {
   HaplyServer server;
   std::ptrdiff_t descriptors = 0, threads = 0;
-  double slowest_sample = 0, slowest = 0, bytes = 0;
+  double slowest_state = 0, slowest = 0, bytes = 0;
   for (int i = 0; i <= cycles && !context.interrupted(); ++i) {
     context.progress(static_cast<double>(i) / cycles);
     {
       const std::int64_t begin = devices::usb::monotonicNs();
       HaplyHost host(bothArmsOf(server));
-      while (!host.arm(0).sample().valid) sleepMs(0.5);
-      if (i > 0) slowest_sample = std::max(slowest_sample, msSince(begin, devices::usb::monotonicNs()));
+      while (host.counts().answered == 0) sleepMs(0.5);
+      if (i > 0) slowest_state = std::max(slowest_state, msSince(begin, devices::usb::monotonicNs()));
       host.waitReady(10);
       if (i > 0) slowest = std::max(slowest, msSince(begin, devices::usb::monotonicNs()));
     }
@@ -240,8 +264,8 @@ std::vector<Record> connections(MeasureContext& context, int cycles) {
           exactly("threads left behind", static_cast<double>(entriesIn("/proc/self/task") - threads), "-", 0),
           atMost("memory per connection, the service's too",
                  (static_cast<double>(::mallinfo2().uordblks) - bytes) / cycles, "bytes", 100),
-          atMost("from nothing to samples, slowest", slowest_sample, "ms", 300),
-          unbounded("from nothing to ready, half a second of zeros included, slowest", slowest, "ms")};
+          atMost("from nothing to states that stream, slowest", slowest_state, "ms", 300),
+          atMost("from nothing to ready, half a second of zeros included, slowest", slowest, "ms", 800)};
 }
 
 enum class Phase { kConnect, kSettle, kStream, kPush, kClose };
@@ -256,9 +280,10 @@ struct FaultCounts {
 bool isUnsound(HaplyServer& server, HaplyHost& host) {
   constexpr double kFar = 5e-3, kOld = 3e-3;  // [m], [s]
   const devices::ArmSample sample = host.arm(0).sample();
-  if (!sample.valid || 1e-9 * static_cast<double>(devices::usb::monotonicNs()) - sample.time > kOld) return false;
   Vec3 truth = Vec3::Zero();
   server.with([&](HaplyService& service) { truth = service.plant(0).arm().sample().p_DF; });
+  // its age as the truth is read: the machine may have stood still in between, while the arm went on
+  if (!sample.valid || 1e-9 * static_cast<double>(devices::usb::monotonicNs()) - sample.time > kOld) return false;
   return !((sample.p_DF - truth).norm() < kFar);
 }
 

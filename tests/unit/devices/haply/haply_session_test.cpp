@@ -144,6 +144,24 @@ TEST(HaplySession, DoubtsAnArmThatIsDeafInEitherSpelling) {
   EXPECT_NE(wire.session.complaint().find("echo"), std::string::npos) << wire.session.complaint();
 }
 
+// Its place needn't stand still for that, and the force needn't change.
+TEST(HaplySession, DoubtsAnArmThatGoesDeafWhileItPushesEvenly) {
+  for (const double f : {0.1, 1.0, 1.9}) {
+    Wire wire;
+    wire.run(0.6);
+    wire.arm();
+    wire.push({0, 0, f});
+    wire.run(0.05);
+    ASSERT_NEAR(wire.force(), f, 1e-6) << wire.session.complaint();
+    wire.service.setFault(HaplyFault::kDeafToForces);
+    wire.run(0.2);
+    EXPECT_FALSE(wire.session.doubted()) << f << " N: a filter may take that long; " << wire.session.complaint();
+    wire.run(0.1);
+    EXPECT_TRUE(wire.session.doubted()) << f << " N";
+    EXPECT_NE(wire.session.complaint().find("renders nothing"), std::string::npos) << wire.session.complaint();
+  }
+}
+
 TEST(HaplySession, TakesStatesThatAreFreshAndStatesThatAreOneMessageOld) {
   for (const bool old : {false, true}) {
     Wire wire(twoArms(), {.one_message_old = old});
