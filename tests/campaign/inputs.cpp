@@ -235,6 +235,8 @@ std::vector<std::string> pickupArguments(const std::string& out) {
           "0.6",
           "--condition",
           "force",
+          "--mass",  // so light that it is up after a second or two: four times as many sessions in a campaign's time
+          "0.01",
           "--sample-rate",
           "10",
           "--seed",

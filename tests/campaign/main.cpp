@@ -17,7 +17,8 @@ namespace {
 
 struct Asked {
   std::vector<std::string> only;
-  int one_case = -1;
+  int one_case = -1, from = 0;
+  double minutes = 1e6;  // of a row, at most
   bool json = false;
 };
 
@@ -63,9 +64,16 @@ void runCase(const Row& row, const Ground& ground, int number, Tally& tally) {
 Tally runRow(const Row& row, const Ground& ground, const Asked& asked) {
   Tally tally;
   std::size_t told = 0;
-  const int cases = casesOf(row, ground);
-  for (int n = asked.one_case < 0 ? 0 : asked.one_case; n < (asked.one_case < 0 ? cases : asked.one_case + 1); ++n) {
+  const int first = asked.one_case < 0 ? asked.from : asked.one_case;
+  const int end = asked.one_case < 0 ? casesOf(row, ground) : asked.one_case + 1;
+  const auto begin = std::chrono::steady_clock::now();
+  for (int n = first; n < end; ++n) {
+    if (std::chrono::steady_clock::now() - begin > std::chrono::duration<double>(60 * asked.minutes)) {
+      tally.skipped = fmt::format("time is over before case {} of {}", n, end);
+      break;
+    }
     runCase(row, ground, n, tally);
+    ++tally.cases;
     for (; told < tally.faults.size(); ++told) {
       keep(ground, tally.faults[told]);
       if (told < kShown) tell(ground, tally.faults[told]);
@@ -91,8 +99,9 @@ std::string record(const Row& row, const Tally& t) {
   std::string counts;
   for (std::size_t i = 0; i < t.counts.size(); ++i)
     counts += fmt::format(", \"{}\": {}", kVerdictNames[i], t.counts[i]);
-  return fmt::format("  {{\"name\": \"{}\", \"what\": \"{}\", \"runs\": {}{}, \"seconds\": {:.1f}, \"ok\": {}}}",
-                     row.name, row.what, t.runs, counts, t.seconds, t.faults.empty());
+  return fmt::format(
+      "  {{\"name\": \"{}\", \"what\": \"{}\", \"cases\": {}, \"runs\": {}{}, \"seconds\": {:.1f}, \"ok\": {}}}",
+      row.name, row.what, t.cases, t.runs, counts, t.seconds, t.faults.empty());
 }
 
 int runRows(Ground ground, const Asked& asked) {
@@ -109,6 +118,7 @@ int runRows(Ground ground, const Asked& asked) {
   for (const auto& [row, tally] : done) {
     table += asked.json ? fmt::format("{}{}", table.empty() ? "" : ",\n", record(*row, tally))
                         : fmt::format("{}  {}\n", line(*row, tally), row->what);
+    if (!asked.json) table += fmt::format("{:<20} {} cases\n", "", tally.cases);
     if (!asked.json && tally.hits > 0) table += fmt::format("{:<20} it hit {} times\n", "", tally.hits);
     if (!asked.json && !tally.skipped.empty()) table += fmt::format("{:<20} {}\n", "", tally.skipped);
     for (std::size_t i = 0; i < total.counts.size(); ++i) total.counts[i] += tally.counts[i];
@@ -156,6 +166,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--only", asked.only, "Only these rows");
   app.add_option("--case", asked.one_case, "Only this case of the rows")->check(CLI::NonNegativeNumber);
+  app.add_option("--from", asked.from, "From this case of the rows on")->check(CLI::NonNegativeNumber);
+  app.add_option("--minutes", asked.minutes, "Of each row, at most")->check(CLI::Range(0.01, 1e6));
   app.add_option("--seed", ground.seed, "Of all that is drawn")->capture_default_str();
   app.add_option("--pincer", ground.pincer, "The program")->check(CLI::ExistingFile);
   app.add_option("--out", ground.out, "Where cases work, and where those that failed stay");
@@ -164,7 +176,8 @@ int main(int argc, char** argv) {
   app.footer(
       "\nExit code 1 if a row fails. What failed stays in --out, with the command that repeats it.\n\nExamples:\n  "
       "tests/campaign/run\n"
-      "  tests/campaign/run --only scenes kills --times 10\n");
+      "  tests/campaign/run --only scenes kills --times 10\n"
+      "  tests/campaign/run --only every-failure --times 100 --from 800 --minutes 60\n");
   try {
     app.parse(argc, argv);
     requireKnown(asked.only);

@@ -116,6 +116,19 @@ bool awaitEnd(int handle, double until) {
   }
 }
 
+// The longest that a thread of the process has stood ready without getting a processor [s]; 0 where the kernel doesn't tell.
+double waitedForProcessor(pid_t process) {
+  double longest = 0;
+  std::error_code ended;
+  const std::filesystem::path threads = "/proc/" + std::to_string(process) + "/task";
+  for (std::filesystem::directory_iterator thread(threads, ended), end; !ended && thread != end;
+       thread.increment(ended)) {
+    double ran = 0, waited = 0;  // [ns]
+    if (std::ifstream(thread->path() / "schedstat") >> ran >> waited) longest = std::max(longest, 1e-9 * waited);
+  }
+  return longest;
+}
+
 std::string quoted(const std::string& text) {
   const bool plain =
       !text.empty() &&
@@ -169,7 +182,10 @@ Ended RunningProgram::wait() {
     e.struck = true;
     ::kill(process_, launch_.blow->signal);
   }
-  if (!over && !(over = awaitEnd(handle_, began_ + launch_.limit))) {
+  double until = began_ + launch_.limit;
+  while (!over && !(over = awaitEnd(handle_, until)) && until < began_ + launch_.limit + waitedForProcessor(process_))
+    until = began_ + launch_.limit + waitedForProcessor(process_);
+  if (!over) {
     e.stopped = true;
     ::kill(process_, launch_.stop_signal);
     over = awaitEnd(handle_, now() + launch_.grace);

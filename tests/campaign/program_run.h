@@ -2,7 +2,8 @@
 // in; how it ended and what it said come out.
 //
 // The program leads a process group of its own, so that what it started ends with it. Over its time limit it is asked
-// to stop by a signal; if it hasn't ended `grace` seconds later, it is killed and counts as hung.
+// to stop by a signal; if it hasn't ended `grace` seconds later, it is killed and counts as hung. Time in which it
+// stood ready and others had the processors doesn't count: a busy machine is no fault of the program.
 #pragma once
 #include <filesystem>
 #include <optional>

@@ -32,7 +32,7 @@ struct Fault {
 
 struct Tally {
   std::array<std::int64_t, 7> counts{};
-  std::int64_t runs = 0;  // of programs, or executions of a parser
+  std::int64_t cases = 0, runs = 0;  // runs of programs, or executions of a parser
   double seconds = 0;
   std::vector<Fault> faults;
   std::string skipped;    // why the row, or a part of it, wasn't done

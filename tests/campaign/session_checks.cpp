@@ -29,6 +29,7 @@ void requireWhole(Case& c) {
 void completeSession(Case& c) {
   const SessionState before = stateOf(c.folder / "out/session.db");
   const Ended ended = c.run(c.pincer(resumedPickup("out")), {.name = "out"});
+  if (ended.stopped) return c.fault(Verdict::kHung, "going on takes longer than its limit");
   if (ended.exit_code == 0 && ended.signal == 0) {
     compareTrials(c, before, stateOf(c.folder / "out/session.db"));
     return requireWhole(c);
@@ -37,7 +38,8 @@ void completeSession(Case& c) {
     return c.fault(Verdict::kLost, "can't be gone on with: " + ended.error);
   if (before.state == "complete") return;  // --resume says that nothing is left
   fs::remove_all(c.folder / "out");
-  c.run(c.pincer(pickupArguments("out")), {.codes = {0}});
+  const Ended anew = c.run(c.pincer(pickupArguments("out")), {.codes = {0}});
+  if (anew.stopped) return c.fault(Verdict::kHung, "beginning anew takes longer than its limit");
   requireWhole(c);
 }
 
