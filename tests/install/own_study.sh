@@ -40,5 +40,27 @@ block '^import pandas' > guide.py
 /usr/bin/python3 guide.py | tee guide.txt
 grep -q 'level_si' guide.txt   # described beside the data
 grep -qE '^low-curvature +[0-9]' guide.txt && grep -qE '^edge +[0-9]' guide.txt
+grep -qx 'low-curvature: large cylinder; edge: edge' guide.txt
 pincer export out/pilot/session.db --bids bids > /dev/null
-[[ -d bids ]]
+# Every column of every table is described, in both exports; the conditions are those of the study.
+/usr/bin/python3 - << 'PYTHON'
+import json, pathlib, pandas
+columns = pandas.read_csv("out/pilot/csv/columns.csv")
+for file in pathlib.Path("out/pilot/csv").glob("*.csv"):
+    if file.stem != "columns":
+        described = columns[columns.table == file.stem]
+        assert list(pandas.read_csv(file, nrows=1).columns) == list(described.column), file
+        assert described.description.str.len().min() > 6, file
+labels = {"low-curvature": "large cylinder", "edge": "edge"}
+tables = list(pathlib.Path("bids").glob("sub-*/beh/*.tsv"))
+assert tables
+for file in tables:
+    data, sidecar = pandas.read_csv(file, sep="\t"), json.loads(file.with_suffix(".json").read_text())
+    assert set(data.columns) <= set(sidecar), set(data.columns) - set(sidecar)
+    assert sidecar["condition"]["Levels"] == labels
+    assert set(data.condition) == set(labels) and data.trial.min() == 1 and data.participant.iloc[0] in file.name
+assert json.load(open("bids/participants.json"))["first_condition"]["Levels"] == labels
+PYTHON
+# Given to another experiment it says so, and what to do.
+! pincer run delay-discrimination --study docs/examples/own_study.json --print-study 2> wrong.txt
+grep -q 'Give the file to `pincer run backlash-discrimination`' wrong.txt

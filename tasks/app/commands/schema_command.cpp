@@ -24,9 +24,17 @@ std::string studySchema(std::string_view task, const Study& published) {
   return SchemaWriter().schemaOf(fmt::format("pincer study, {}, version 1", task), published);
 }
 
+// Of every experiment, in one file: what an editor can be given once for all.
+std::string anyStudySchema() {
+  return SchemaWriter().schemaOfAny("pincer study that names its experiment, version 1", smoothnessStudy(),
+                                    backlashStudy(), delayStudy(), LocalisationStudy{}, ShapeStudy{},
+                                    ManipulationStudy{});
+}
+
 // Kinds of file, and how the schema of each is written.
 constexpr FileKind kFileKinds[] = {
     {"scene", [] { return std::string(sceneSchema()); }},
+    {"study", anyStudySchema},
     {"manipulation", [] { return studySchema("manipulation", ManipulationStudy{}); }},
     {"smoothness-discrimination", [] { return studySchema("smoothness-discrimination", smoothnessStudy()); }},
     {"backlash-discrimination", [] { return studySchema("backlash-discrimination", backlashStudy()); }},
@@ -69,7 +77,8 @@ void addSchemaCommand(CLI::App& app, int& exit_code) {
       "Every key of a scene or study file: a JSON Schema for editors, or tables to read; every column of a session");
   command
       ->add_option("file", arguments->name,
-                   "scene, the study: manipulation, delay-discrimination, ...; session: its tables and their columns")
+                   "scene; study: of any experiment; one experiment's: manipulation, delay-discrimination, ...; "
+                   "session: its tables and their columns")
       ->required()
       ->check(CLI::IsMember(kindNames()));
   command->add_flag("--markdown", arguments->markdown, "Tables, as in docs/reference");

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "pincer/tasks/lab/experiments/study_names.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/run/files/file_limits.h"
 #include "pincer/tasks/run/scene/json_change.h"
@@ -89,12 +90,24 @@ void readParameters(const JsonValue& json, Object& object, std::initializer_list
   json.allowOnly(keys);
 }
 
-// The whole file. "version" may be left out. What two parameters demand of each other is asked here as well.
+// The experiment that runs once the file is read: of a manipulation study, its list of tasks decides.
+template <HasParameters Study>
+std::string experimentAfter(const JsonValue&, const Study& study) {
+  return taskName(study);
+}
+inline std::string experimentAfter(const JsonValue& file, ManipulationStudy study) {
+  if (const JsonValue* tasks = file.find("tasks")) readField(*tasks, study.tasks, Parameter{"", {}, kHandTaskNames});
+  return taskName(study);
+}
+
+// The whole file. "version" and "experiment" may be left out. What two parameters demand of each other is asked here
+// as well.
 template <HasParameters Study>
 void readStudyText(const JsonValue& file, Study& study) {
   if (const JsonValue* version = file.find("version"); version && version->number() != 1)
     version->reject("is unknown. This pincer reads version 1.");
-  readParameters(file, study, {"version"});
+  requireExperiment(file, experimentAfter(file, study));  // before keys that only the other experiment knows
+  readParameters(file, study, {"version", kExperimentKey});
   try {
     validate(study);
   } catch (const ParameterError& error) {

@@ -5,6 +5,7 @@
 #pragma once
 #include <cmath>
 
+#include "pincer/tasks/lab/experiments/study_names.h"
 #include "pincer/tasks/lab/experiments/study_parameters.h"
 #include "pincer/tasks/run/files/json_writer.h"
 
@@ -93,6 +94,8 @@ std::string studyText(const Study& study) {
   out.open('{');
   out.key("version");
   out.value("1", "of this format");
+  out.key(kExperimentKey);
+  out.value(quotedJson(taskName(study)), kExperimentMeaning);
   writeMembers(out, study);
   out.close('}');
   return out.text();

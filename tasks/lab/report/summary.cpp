@@ -8,8 +8,7 @@
 #include <set>
 
 #include "pincer/contact/io/printable.h"
-#include "pincer/tasks/lab/study/survey.h"
-#include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/session/session_conditions.h"
 
 namespace pincer::tasks {
 
@@ -60,37 +59,12 @@ void addCells(SessionSummary& s, const std::string& condition, const std::vector
   s.cells.push_back(cellOf(condition, kAllFrictions, trials));
 }
 
-// The published conditions are labelled so where the session's study can't say it.
-std::string publishedLabel(const std::string& condition) {
-  if (condition == "force") return "force only";
-  return condition == "cld+force" ? "CLD + force" : condition;
-}
-
-// Name and label of the study's conditions; none where the session's protocol can't be read. Older sessions have the
-// names alone.
-std::vector<NamedCondition> studyConditions(const SessionInfo& info) {
-  std::vector<NamedCondition> conditions;
-  try {
-    const JsonValue study = parseJson(info.protocol_json, "protocol");
-    const JsonValue* list = study.find("conditions");
-    if (!list) return {};
-    for (const JsonValue& c : list->array()) {
-      const bool only_named = c.kind() == JsonValue::Kind::kString;
-      const std::string name = only_named ? c.text() : c.at("name").text();
-      conditions.push_back({name, only_named ? publishedLabel(name) : c.at("label").text()});
-    }
-  } catch (const InputError&) {
-    conditions.clear();
-  }
-  return conditions;
-}
-
 // The conditions that trials were done in.
 void addConditions(SessionSummary& s, std::set<std::string> done) {
-  for (const NamedCondition& c : studyConditions(s.info)) {
-    if (done.erase(c.name) == 0) continue;
-    s.conditions.push_back(c.name);
-    s.labels.push_back(c.label.empty() ? c.name : c.label);
+  for (const auto& [name, label] : conditionLabels(s.info)) {
+    if (done.erase(name) == 0) continue;
+    s.conditions.push_back(name);
+    s.labels.push_back(label);
   }
   std::vector<std::string> others(done.begin(), done.end());
   std::stable_partition(others.begin(), others.end(), [](const std::string& c) { return c == "force"; });

@@ -75,8 +75,7 @@ std::string fieldOf(const ColumnName& name, const Field& field) {
 }
 
 // A column's entry: description, unit and levels, as BIDS has them.
-std::string describedJson(std::string_view table, const ColumnName& name) {
-  const ColumnMeaning meaning = meaningOf(table, name);
+std::string describedJson(const ColumnMeaning& meaning) {
   std::string json = fmt::format("{{\"Description\": {}", quotedJson(meaning.description));
   if (!meaning.unit.empty()) json += fmt::format(", \"Units\": {}", quotedJson(meaning.unit));
   std::string levels;
@@ -103,11 +102,12 @@ std::string rowsOf(const std::vector<Record>& rows) {
 }
 
 template <class Record>
-std::string sidecarOf(const std::string& task) {
+std::string sidecarOf(const std::string& task, const ConditionLabels& conditions) {
   std::string json = fmt::format("{{\n  \"TaskName\": \"{}\"", bidsLabel(task));
   const Record names{};
   forEachColumn(names, [&](const ColumnName& name, const auto&) {
-    json += fmt::format(",\n  \"{}\": {}", name.text(), describedJson(tableName<Record>(), name));
+    json +=
+        fmt::format(",\n  \"{}\": {}", name.text(), describedJson(meaningOf(tableName<Record>(), name, conditions)));
   });
   return json + "\n}\n";
 }
@@ -115,7 +115,11 @@ std::string sidecarOf(const std::string& task) {
 // The files of one data set.
 class DataSet {
  public:
-  explicit DataSet(std::string directory) : directory_(std::move(directory)) { makeDirectory(directory_); }
+  // `conditions` of the session, in the descriptions of columns that name one.
+  DataSet(std::string directory, ConditionLabels conditions)
+      : directory_(std::move(directory)), conditions_(std::move(conditions)) {
+    makeDirectory(directory_);
+  }
 
   void write(const std::string& path, const std::string& content) {
     writeAtomically(directory_ + "/" + path, content);
@@ -133,7 +137,7 @@ class DataSet {
       const std::string stem = fmt::format("{}/{}_task-{}_beh", folder, subjectOf(key.first), bidsLabel(key.second));
       makeDirectory(directory_ + "/" + folder);
       write(stem + ".tsv", rowsOf(own));
-      write(stem + ".json", sidecarOf<Record>(key.second));
+      write(stem + ".json", sidecarOf<Record>(key.second, conditions_));
     }
   }
 
@@ -154,7 +158,7 @@ class DataSet {
     const SurveyRecord names{};
     forEachColumn(names, [&](const ColumnName& name, const auto&) {
       if (name.quantity != "participant")
-        json += fmt::format(",\n  \"{}\": {}", name.text(), describedJson("survey", name));
+        json += fmt::format(",\n  \"{}\": {}", name.text(), describedJson(meaningOf("survey", name, conditions_)));
     });
     write("phenotype/survey.json", json + "\n}\n");
   }
@@ -164,14 +168,15 @@ class DataSet {
     for (const auto& [person, condition] : first_conditions_)
       people += fmt::format("{}\t{}\n", subjectOf(person), tsvText(condition));
     write("participants.tsv", people);
-    write("participants.json",
-          "{\n  \"first_condition\": {\"Description\": \"condition that the participant did first\"}\n}\n");
+    const ColumnMeaning meaning{"condition that the participant did first", "", conditions_};
+    write("participants.json", fmt::format("{{\n  \"first_condition\": {}\n}}\n", describedJson(meaning)));
   }
 
   std::vector<std::string> paths;
 
  private:
   std::string directory_;
+  ConditionLabels conditions_;
   std::map<std::int64_t, std::string> first_conditions_;
 };
 
@@ -198,7 +203,7 @@ std::string readmeOf(const SessionReader& session) {
 }  // namespace
 
 std::vector<std::string> exportBids(const SessionReader& session, const std::string& directory) {
-  DataSet set(directory);
+  DataSet set(directory, conditionLabels(session.info()));
   set.write("dataset_description.json", descriptionOf(session.info()));
   set.write("README.md", readmeOf(session));
   set.writeTables(session.trials(), [](const TrialRecord& trial) { return trial.task; });

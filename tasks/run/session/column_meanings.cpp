@@ -14,8 +14,6 @@ namespace {
 
 // Levels that several columns share.
 constexpr std::string_view kNoYes = "0=no;1=yes";
-constexpr std::string_view kConditions =
-    "force=force only: the tactors stay parked;cld+force=contact location display and force";
 
 // One quantity of a table; of any table, where `table` is empty. Levels: value=meaning, separated by semicolons.
 struct DescribedQuantity {
@@ -47,8 +45,7 @@ constexpr std::array kQuantities = {
     DescribedQuantity{"reading", "decision", "what it decided"},
     DescribedQuantity{"trial", "task", "experiment",
                       "sphere-pickup=pick up a sphere;cylinder-alignment=turn a cylinder's flat to the monitor"},
-    DescribedQuantity{"", "condition", "rendering condition", kConditions},
-    DescribedQuantity{"response", "condition", "condition of the study, as its file names it"},
+    DescribedQuantity{"", "condition", "condition of the study, as its file names it"},
     DescribedQuantity{"trial", "training", "before the counted trials, left out of all results", kNoYes},
     DescribedQuantity{"trial", "place_in_order", "place in the participant's order of trials, from 1"},
     DescribedQuantity{"trial", "mu_s", "static friction coefficient of the object; 0 where the task has none"},
@@ -202,11 +199,26 @@ std::string unitFor(std::string_view unit) {
 }
 
 template <class Record>
-void describeTable(std::string_view table, std::vector<DescribedColumn>& all) {
+void describeTable(std::string_view table, const ConditionLabels& conditions, std::vector<DescribedColumn>& all) {
   const Record record{};
   forEachColumn(record, [&](const ColumnName& name, const auto&) {
-    all.push_back({std::string(table), name.text(), meaningOf(table, name)});
+    all.push_back({std::string(table), name.text(), meaningOf(table, name, conditions)});
   });
+}
+
+}  // namespace
+
+ColumnMeaning meaningOf(std::string_view table, const ColumnName& column, const ConditionLabels& conditions) {
+  const auto found = [&](std::string_view of) {
+    return std::find_if(kQuantities.begin(), kQuantities.end(),
+                        [&](const DescribedQuantity& q) { return q.table == of && q.name == column.quantity; });
+  };
+  auto quantity = found(table);
+  if (quantity == kQuantities.end()) quantity = found("");
+  if (quantity == kQuantities.end())
+    throw std::logic_error(fmt::format("column {} of table {} isn't described", column.text(), table));
+  return {describedWith(column, quantity->description), unitFor(column.unit),
+          column.quantity == "condition" ? conditions : levelsOf(quantity->levels)};
 }
 
 std::string levelText(const ColumnMeaning& meaning) {
@@ -216,20 +228,6 @@ std::string levelText(const ColumnMeaning& meaning) {
   return text;
 }
 
-}  // namespace
-
-ColumnMeaning meaningOf(std::string_view table, const ColumnName& column) {
-  const auto found = [&](std::string_view of) {
-    return std::find_if(kQuantities.begin(), kQuantities.end(),
-                        [&](const DescribedQuantity& q) { return q.table == of && q.name == column.quantity; });
-  };
-  auto quantity = found(table);
-  if (quantity == kQuantities.end()) quantity = found("");
-  if (quantity == kQuantities.end())
-    throw std::logic_error(fmt::format("column {} of table {} isn't described", column.text(), table));
-  return {describedWith(column, quantity->description), unitFor(column.unit), levelsOf(quantity->levels)};
-}
-
 int countsFrom(const ColumnName& column) {
   // Quantities that count from 1; all others begin at 0.
   constexpr std::array<std::string_view, 5> kCounted = {"trial", "participant", "run", "place_in_order",
@@ -237,26 +235,26 @@ int countsFrom(const ColumnName& column) {
   return std::find(kCounted.begin(), kCounted.end(), column.quantity) != kCounted.end() ? 1 : 0;
 }
 
-std::vector<DescribedColumn> allColumns() {
+std::vector<DescribedColumn> allColumns(const ConditionLabels& conditions) {
   std::vector<DescribedColumn> all;
-  describeTable<SessionInfo>(tableName<SessionInfo>(), all);
-  describeTable<SessionProgress>(tableName<SessionProgress>(), all);
-  describeTable<TrialRecord>(tableName<TrialRecord>(), all);
-  describeTable<ResponseRecord>(tableName<ResponseRecord>(), all);
-  describeTable<SurveyRecord>(tableName<SurveyRecord>(), all);
-  describeTable<EventRecord>(tableName<EventRecord>(), all);
-  describeTable<ReadingRecord>(tableName<ReadingRecord>(), all);
-  describeTable<SampleRecord>(tableName<SampleRecord>(), all);
-  describeTable<HandsRecord>(tableName<HandsRecord>(), all);
-  describeTable<InputRecord>("input", all);
+  describeTable<SessionInfo>(tableName<SessionInfo>(), conditions, all);
+  describeTable<SessionProgress>(tableName<SessionProgress>(), conditions, all);
+  describeTable<TrialRecord>(tableName<TrialRecord>(), conditions, all);
+  describeTable<ResponseRecord>(tableName<ResponseRecord>(), conditions, all);
+  describeTable<SurveyRecord>(tableName<SurveyRecord>(), conditions, all);
+  describeTable<EventRecord>(tableName<EventRecord>(), conditions, all);
+  describeTable<ReadingRecord>(tableName<ReadingRecord>(), conditions, all);
+  describeTable<SampleRecord>(tableName<SampleRecord>(), conditions, all);
+  describeTable<HandsRecord>(tableName<HandsRecord>(), conditions, all);
+  describeTable<InputRecord>("input", conditions, all);
   return all;
 }
 
-std::string columnsCsv() {
+std::string columnsCsv(const ConditionLabels& conditions) {
   CsvTable table;
   for (const char* head : {"table", "column", "unit", "description", "levels"}) table.add(std::string(head));
   table.endRow();
-  for (const DescribedColumn& c : allColumns()) {
+  for (const DescribedColumn& c : allColumns(conditions)) {
     for (const std::string& text : {c.table, c.column, c.meaning.unit, c.meaning.description, levelText(c.meaning)})
       table.add(text);
     table.endRow();
@@ -270,7 +268,8 @@ std::string columnsMarkdown() {
       "BIDS `n/a`): nothing "
       "was measured.\n"
       "Trials, participants, runs and places in an order count from 1 in all exports; in `session.db` itself "
-      "they\nbegin at 0.\n";
+      "they\nbegin at 0.\nExports list the conditions of their session's study as levels of `condition`, with their "
+      "labels.\n";
   std::string table;
   for (const DescribedColumn& c : allColumns()) {
     if (c.table != table) text += fmt::format("\n## {}\n| column | unit | meaning |\n|---|---|---|\n", table = c.table);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "pincer/tasks/run/session/columns.h"
+#include "pincer/tasks/run/session/session_conditions.h"
 
 namespace pincer::tasks {
 
@@ -19,21 +20,24 @@ struct ColumnMeaning {
   std::vector<std::pair<std::string, std::string>> levels;  // of a column of few values: each and what it means
 };
 
-// Throws std::logic_error for a column that nobody described.
-ColumnMeaning meaningOf(std::string_view table, const ColumnName& column);
+// `conditions` are the levels of a column that names one. Throws std::logic_error for a column that nobody described.
+ColumnMeaning meaningOf(std::string_view table, const ColumnName& column, const ConditionLabels& conditions = {});
 
 // 1 for a column that counts what people count, else 0: what an exported value is larger by.
 int countsFrom(const ColumnName& column);
+
+// The levels on one line: "0: no; 1: yes".
+std::string levelText(const ColumnMeaning& meaning);
 
 struct DescribedColumn {
   std::string table, column;
   ColumnMeaning meaning;
 };
 // Of every exported table, in order.
-std::vector<DescribedColumn> allColumns();
+std::vector<DescribedColumn> allColumns(const ConditionLabels& conditions = {});
 
 // All columns as a table: table, column, unit, description, levels.
-std::string columnsCsv();
+std::string columnsCsv(const ConditionLabels& conditions = {});
 std::string columnsMarkdown();
 
 }  // namespace pincer::tasks

@@ -96,7 +96,7 @@ std::vector<std::string> exportCsv(const SessionReader& session, const std::stri
   writeAtomically(paths[4], asCsv(session.responses()));
   writeAtomically(paths[5], asCsv(session.readings()));
   paths.push_back(directory + "/columns.csv");
-  writeAtomically(paths.back(), columnsCsv());
+  writeAtomically(paths.back(), columnsCsv(conditionLabels(session.info())));
   if (const auto survey = session.survey(); !survey.empty()) {
     paths.push_back(directory + "/survey.csv");
     writeAtomically(paths.back(), asCsv(survey));

@@ -184,6 +184,20 @@ TEST(StudySchema, KnowsTheKeysAndDefaultsOfTheFile) {
   expectSchemaOf(ShapeStudy{});
 }
 
+// One schema for whatever experiment a file names: under each name the one of that experiment.
+TEST(StudySchema, OfAnyExperimentIsThatOfTheOneThatIsNamed) {
+  const JsonValue any = parseJson(tests::runPincer({"schema", "study"}).out, "study");
+  EXPECT_EQ(any.at("properties").at("experiment").at("enum").array().size(), kExperimentNames.size());
+  std::size_t names = 0;
+  for (const JsonValue& choice : any.at("allOf").array()) {
+    const auto& named = choice.at("if").at("properties").at("experiment").at("enum").array();
+    names += named.size();
+    const JsonValue own = parseJson(tests::runPincer({"schema", named.back().text()}).out, named.back().text());
+    EXPECT_EQ(choice.at("then").at("properties").keys(), own.at("properties").keys()) << named.back().text();
+  }
+  EXPECT_EQ(names, kExperimentNames.size());
+}
+
 TEST(StudySchema, RefusesWithTheLineWhatIsOutOfRange) {
   const auto said = [](const std::string& text) -> std::string {
     try {

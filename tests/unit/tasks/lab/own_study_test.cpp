@@ -63,11 +63,11 @@ std::string fileOf(const OwnStudy& study) {
   std::string conditions = study.conditions;
   for (std::size_t at; (at = conditions.find("SHORT")) != std::string::npos;) conditions.replace(at, 5, kShort);
   return fmt::format(
-      R"({{"participants": {}, {}, "conditions": [{}],
+      R"({{"experiment": "{}", "participants": {}, {}, "conditions": [{}],
   "session": {{"order": "shuffled", "blocks": 2, "instructions": ["Feel it."],
     "demographics": [{{"name": "plays", "text": "Do you play?", "kind": "choice", "choices": ["no", "yes"]}}],
     "survey": [{{"name": "sure", "text": "I was sure", "per": "condition"}}]}}}})",
-      study.participants, study.design, conditions);
+      study.task, study.participants, study.design, conditions);
 }
 
 // Counted trials per condition and participant.
@@ -100,7 +100,44 @@ TEST_P(OwnStudies, NameConditionsBlocksOrderAndQuestions) {
   }
   const auto exported = tests::runPincer({"export", out + "/session.db"});
   ASSERT_EQ(exported.exit_code, 0) << exported.error;
-  EXPECT_TRUE(contains(exported.out, "columns.csv")) << exported.out;
+  const std::string columns = tests::readFile(out + "/csv/columns.csv");
+  const bool two_fingers = SessionReader(out + "/session.db").responses().empty();
+  EXPECT_TRUE(contains(columns, std::string(two_fingers ? "trial" : "response") +
+                                    ",condition,,\"condition of the study, as its file names it\","))
+      << columns;
+  EXPECT_TRUE(contains(columns, ": a little other; third: quite other\n")) << columns;
+}
+
+// Its keys may all be known to the other one, which would then run in conditions that differ in their names alone.
+TEST_P(OwnStudies, AreRefusedByAnotherExperiment) {
+  const OwnStudy& study = GetParam();
+  const TemporaryDirectory dir;
+  const std::string file = dir / "study.json";
+  std::ofstream(file) << fileOf(study);
+  for (const OwnStudy& other : kStudies) {
+    if (std::string(other.task) == study.task) continue;
+    const auto ran = tests::runPincer({"run", other.task, "--study", file, "--print-study"});
+    EXPECT_EQ(ran.exit_code, 3) << other.task;
+    EXPECT_TRUE(contains(ran.error, fmt::format("study.json:1: experiment = \"{}\" is another experiment than the one "
+                                                "that runs here, {}. Give the file to `pincer run {}`",
+                                                study.task, other.task, study.task)))
+        << ran.error;
+  }
+}
+
+// A study of both tasks holds the parameters of each.
+TEST(OwnStudyFile, OfBothTasksIsTakenByEither) {
+  const TemporaryDirectory dir;
+  const std::string file = dir / "study.json";
+  std::ofstream(file) << R"({"experiment": "manipulation", "sphere_pickup": {"repetitions": 1}})";
+  for (const char* task : {"sphere-pickup", "cylinder-alignment", "manipulation"}) {
+    const auto shown = tests::runPincer({"run", task, "--study", file, "--print-study"});
+    EXPECT_EQ(shown.exit_code, 0) << shown.error;
+    EXPECT_TRUE(contains(shown.out, fmt::format("\"experiment\": \"{}\"", task))) << shown.out;
+  }
+  std::ofstream(file) << R"({"experiment": "sphere-picup"})";
+  EXPECT_TRUE(contains(tests::runPincer({"run", "sphere-pickup", "--study", file, "--print-study"}).error,
+                       "study.json:1: experiment = \"sphere-picup\" isn't known. Did you mean \"sphere-pickup\"?"));
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryExperiment, OwnStudies, testing::ValuesIn(kStudies), [](const auto& study) {

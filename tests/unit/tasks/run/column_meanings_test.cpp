@@ -40,6 +40,8 @@ TEST(ColumnMeanings, ExportsCountFromOne) {
   const tests::TemporaryDirectory dir;
   SessionInfo info;
   info.task = "sphere-pickup";
+  info.protocol_json =
+      R"({"conditions": [{"name": "force", "label": "bare"}, {"name": "heavy", "label": ""}, "cld+force"]})";
   SessionWriter writer = SessionWriter::create(dir / "s.db", info);
   TrialRecord trial;
   trial.condition = "force";
@@ -50,7 +52,13 @@ TEST(ColumnMeanings, ExportsCountFromOne) {
   exportCsv(reader, dir / "csv");
   EXPECT_TRUE(tests::contains(tests::readFile(dir / "csv/trial.csv"), "\n1,sphere-pickup,1,force,0,1,"));
   EXPECT_TRUE(tests::contains(tests::readFile(dir / "csv/columns.csv"), "trial,grip_ratio,,"));
+  EXPECT_TRUE(tests::contains(tests::readFile(dir / "csv/columns.csv"),
+                              "trial,condition,,\"condition of the study, as its file names it\",force: bare; heavy: "
+                              "heavy; cld+force: CLD + force\n"));
   exportBids(reader, dir / "bids");
+  EXPECT_TRUE(
+      tests::contains(tests::readFile(dir / "bids/participants.json"),
+                      "\"Levels\": {\"force\": \"bare\", \"heavy\": \"heavy\", \"cld+force\": \"CLD + force\"}"));
   const std::string stem = dir / "bids/sub-01/beh/sub-01_task-spherepickup_beh";
   EXPECT_TRUE(tests::contains(tests::readFile(stem + ".tsv"), "\n1\tsphere-pickup\tsub-01\tforce\t0\t1\t"));
   const std::string sidecar = tests::readFile(stem + ".json");
