@@ -12,6 +12,7 @@ namespace pincer::tasks {
 namespace {
 
 constexpr double kChanceLimit = 0.05;  // of p: level of significance
+constexpr double kLeastShown = 0.005;  // half of the last digit that is written: narrower intervals have one end
 
 bool isSimulated(const SessionSummary& s) { return s.info.devices_json.find("\"simulated\"") != std::string::npos; }
 
@@ -48,16 +49,21 @@ std::string meanWords(const SessionSummary& s, const MeasureRow& row) {
   return words;
 }
 
+// Equal differences say nothing about how far others would lie apart.
+std::string intervalWords(const Estimate& difference) {
+  if (!(difference.half_width >= kLeastShown)) return "the same for all, so no interval";
+  return fmt::format("95 % interval {:+.2f} to {:+.2f}", difference.mean - difference.half_width,
+                     difference.mean + difference.half_width);
+}
+
 // One condition against the first. `p`: adjusted, where several are compared.
 std::string comparisonWords(const MeasureRow& row, std::size_t k, double p) {
   const PairedTest& test = row.tests[k];
   const std::string unit = unitOf(findingMeasures()[row.measure]);
-  const double low = test.difference.mean - test.difference.half_width,
-               high = test.difference.mean + test.difference.half_width;
   const bool less = test.difference.mean < 0;
-  return fmt::format("difference {:+.2f}{} (95 % interval {:+.2f} to {:+.2f}), {} for {} of {} people; {}",
-                     test.difference.mean, unit, low, high, less ? "less" : "more", less ? test.lower : test.higher,
-                     test.n, chanceWords(p));
+  return fmt::format("difference {:+.2f}{} ({}), {} for {} of {} people; {}", test.difference.mean, unit,
+                     intervalWords(test.difference), less ? "less" : "more", less ? test.lower : test.higher, test.n,
+                     chanceWords(p));
 }
 
 std::string verdictWords(const SessionSummary& s, const MeasureRow& row, std::size_t k, double p) {

@@ -53,6 +53,12 @@ TEST(FindingWords, DontClaimWhatChanceShowsAsWell) {
   EXPECT_TRUE(contains(words, "So no effect of the display is shown; that isn't to say that there is none.")) << words;
 }
 
+// "95 % interval +1.00 to +1.00": as if nothing else could come out.
+TEST(FindingWords, EqualDifferencesHaveNoInterval) {
+  const std::string words = findingWords(pickups({{2, 3}, {4, 5}})).at(0);
+  EXPECT_TRUE(contains(words, "difference +1.00 (the same for all, so no interval), more for 2 of 2 people")) << words;
+}
+
 TEST(FindingWords, OnePersonIsNoFinding) {
   const std::string words = findingWords(pickups({{5, 1}})).at(0);
   EXPECT_TRUE(contains(words, "One simulated person")) << words;
