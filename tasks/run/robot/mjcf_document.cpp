@@ -201,6 +201,11 @@ int classNamed(const Document& document, const std::string& name, const XmlEleme
 
 Document readDocument(const std::string& path, const std::vector<std::string>& allowed_folders) {
   Document document{path, readXml(path), {}, {}, ModelFolder(path, allowed_folders), {}};
+  if (document.root.tag == "robot") {
+    document.root.reject(
+        "is the root of a URDF file, which isn't read here. MuJoCo's program `compile` makes MJCF of it: compile "
+        "robot.urdf robot.xml.");
+  }
   if (document.root.tag != "mujoco") document.root.reject("isn't <mujoco>: this is no MJCF file.");
   Includer(document.folder, path).expand(document.root);
   Checker(document.notes).check(document.root, *findRow("", "mujoco"));

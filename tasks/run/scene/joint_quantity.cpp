@@ -2,6 +2,7 @@
 #include <array>
 
 #include "pincer/tasks/run/quantity.h"
+#include "pincer/tasks/run/scene/scene_parts.h"
 
 namespace pincer::tasks {
 namespace {
@@ -110,7 +111,36 @@ constexpr std::array kPair = {
     QuantityKind{"sliding", "-", [](M m, I i) { return pair(m, i).slides ? 1.0 : 0.0; }},
 };
 
+constexpr std::string_view kOr = " or ";  // between the unit of what turns and that of what slides
+
+template <std::size_t N>
+constexpr std::array<QuantityKind, N> inOneUnit(std::array<QuantityKind, N> kinds, bool slides) {
+  for (QuantityKind& kind : kinds) {
+    const std::size_t at = kind.unit.find(kOr);
+    if (at == std::string_view::npos) continue;
+    kind.unit = slides ? kind.unit.substr(at + kOr.size()) : kind.unit.substr(0, at);
+  }
+  return kinds;
+}
+constexpr auto kTurningJoint = inOneUnit(kJoint, false), kSlidingJoint = inOneUnit(kJoint, true);
+constexpr auto kTurningDrive = inOneUnit(kDrive, false), kSlidingDrive = inOneUnit(kDrive, true);
+
+// The row of `kinds` that `kind` is in `all`, or nullptr.
+template <std::size_t N>
+const QuantityKind* sameOf(const QuantityKind& kind, const std::array<QuantityKind, N>& all,
+                           const std::array<QuantityKind, N>& kinds) {
+  for (std::size_t i = 0; i < N; ++i)
+    if (&all[i] == &kind) return &kinds[i];
+  return nullptr;
+}
+
 }  // namespace
+
+const QuantityKind& inUnitOf(bool slides, const QuantityKind& kind) {
+  const QuantityKind* of_joint = sameOf(kind, kJoint, slides ? kSlidingJoint : kTurningJoint);
+  const QuantityKind* of_drive = sameOf(kind, kDrive, slides ? kSlidingDrive : kTurningDrive);
+  return of_joint ? *of_joint : of_drive ? *of_drive : kind;
+}
 
 std::span<const QuantityKind> jointQuantities() { return kJoint; }
 std::span<const QuantityKind> driveQuantities() { return kDrive; }

@@ -78,6 +78,9 @@ contact::FingerShape readFingerShape(const JsonValue& json, const std::string& f
 
 SceneFinger readFinger(const JsonValue& json, SceneNames& names, const Scene& scene);
 
+// A quantity of joints or drives in the unit of one that slides, or of one that turns.
+const QuantityKind& inUnitOf(bool slides, const QuantityKind& kind);
+
 // Both after bodies, fingers, tick and duration are known.
 Recording readRecording(const JsonValue& json, const Scene& scene);
 Expectation readExpectation(const JsonValue& json, const Scene& scene);

@@ -84,6 +84,23 @@ Quantity findOfFinger(const std::string& text, std::string_view word, const Scen
   return find(text, fingerQuantities(), word, index, reject);
 }
 
+bool slides(const Scene& scene, int joint) {
+  return scene.joints[static_cast<std::size_t>(joint)].kind == engine::JointKind::kSlider;
+}
+
+// "rad or m" as the one that it is; a drive along joints of both kinds keeps both.
+Quantity inItsUnit(Quantity quantity, std::span<const QuantityKind> kinds, const Scene& scene) {
+  std::vector<int> joints;
+  if (kinds.data() == jointQuantities().data()) joints.push_back(static_cast<int>(quantity.index));
+  if (kinds.data() == driveQuantities().data())
+    for (const engine::DriveTerm& term : scene.drives[quantity.index].model.terms) joints.push_back(term.joint);
+  const auto slide = [&](int joint) { return slides(scene, joint); };
+  const bool all = std::all_of(joints.begin(), joints.end(), slide);
+  if (!joints.empty() && (all || std::none_of(joints.begin(), joints.end(), slide)))
+    quantity.kind = &inUnitOf(all, *quantity.kind);
+  return quantity;
+}
+
 constexpr char kTouching = '|';  // between the names of two bodies
 
 // "cube|left.f_x": of what touches between two bodies, on the first.
@@ -117,7 +134,7 @@ Quantity findQuantity(const std::string& text, const Scene& scene, const Reject&
     if (it == family.names.end()) continue;
     const auto index = static_cast<std::size_t>(it - family.names.begin());
     if (family.kinds.data() == fingerQuantities().data()) return findOfFinger(text, word, scene, index, reject);
-    return find(text, family.kinds, word, index, reject);
+    return inItsUnit(find(text, family.kinds, word, index, reject), family.kinds, scene);
   }
   reject(fmt::format("names no body, joint, drive, frame or finger of this scene.{}", suggestion(owner, owners)));
   return {};

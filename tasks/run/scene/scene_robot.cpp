@@ -21,7 +21,10 @@ std::string sceneText(const std::string& path, const RobotSceneOptions& options,
 
 }  // namespace
 
-bool isRobotFile(const std::string& path) { return std::filesystem::path(path).extension() == ".xml"; }
+bool isRobotFile(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".xml" || extension == ".mjcf" || extension == ".urdf";
+}
 
 std::string robotSceneText(const std::string& path, std::string& remarks) { return sceneText(path, {}, remarks); }
 

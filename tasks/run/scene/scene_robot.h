@@ -7,7 +7,7 @@
 
 namespace pincer::tasks {
 
-// True for the files that robots come in: .xml.
+// True for the files that robots come in: .xml, .mjcf, .urdf. Of the last the reader says what to do with it.
 bool isRobotFile(const std::string& path);
 
 // A robot's file as the text of a scene; what of it has no effect is appended to

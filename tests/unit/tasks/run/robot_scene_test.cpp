@@ -101,6 +101,35 @@ TEST_F(RobotScenes, ImportedRunAndNamedInASceneARobotGivesTheSameBits) {
   EXPECT_EQ(engine::hashOf(as_it_is.state().world), engine::hashOf(named.state().world));
 }
 
+// It was called bad JSON.
+TEST_F(RobotScenes, AUrdfFileIsCalledWhatItIs) {
+  const std::string path = write("arm.urdf", R"(<robot name="arm"><link name="base"/></robot>)");
+  std::string remarks;
+  ASSERT_TRUE(isRobotFile(path));
+  const std::string message = tests::errorOf([&] { robotSceneText(path, remarks); });
+  EXPECT_NE(message.find("arm.urdf:1: <robot> is the root of a URDF file"), std::string::npos) << message;
+  EXPECT_NE(message.find("compile robot.urdf robot.xml"), std::string::npos) << message;
+}
+
+// A slider's way was in "rad or m".
+TEST_F(RobotScenes, QuantitiesAreInTheUnitOfTheirJoint) {
+  const Scene scene = sceneOfText(R"(<mujoco><worldbody>
+    <body name="a"><joint name="slide" type="slide" axis="1 0 0"/><geom size=".01" mass="1"/></body>
+    <body name="b" pos="0 1 0"><joint name="turn" axis="1 0 0"/><geom size=".01" mass="1"/></body></worldbody>
+    <tendon><fixed name="both"><joint joint="slide" coef="1"/><joint joint="turn" coef="1"/></fixed></tendon>
+    <actuator><motor name="push" joint="slide"/><motor name="twist" joint="turn"/><motor name="pull" tendon="both"/></actuator></mujoco>)");
+  const auto unit = [&](const std::string& quantity) { return quantityOf(quantity, scene).kind->unit; };
+  EXPECT_EQ(unit("slide.position"), "m");
+  EXPECT_EQ(unit("slide.velocity"), "m/s");
+  EXPECT_EQ(unit("slide.stop_force"), "N");
+  EXPECT_EQ(unit("turn.position"), "rad");
+  EXPECT_EQ(unit("turn.force"), "N m");
+  EXPECT_EQ(unit("turn.load_x"), "N");
+  EXPECT_EQ(unit("push.force"), "N");
+  EXPECT_EQ(unit("twist.force"), "N m");
+  EXPECT_EQ(unit("pull.force"), "N m or N");
+}
+
 TEST_F(RobotScenes, AControlIsCutOffAtTheEndsOfItsRange) {
   const auto crankAfter = [&](double told) {
     Scene scene = sceneOfText(kFourBar);
