@@ -331,6 +331,7 @@ def begun(pincer, screen, experiment, *options):
         return found.returncode == 0
 
     wait_until(has_window, f"{experiment} opens no window")
+    wait_until(lambda: screen.look().std() > 1 or program.poll() is not None, f"{experiment} draws nothing")  # the window is there first
     person = Person(screen, program)
     person.wait(2)
     return person
@@ -344,7 +345,8 @@ def do_trials(person, experiment, wanted):
             return
         assert person.alive(), (person.screen.folder / f"{experiment}.out").read_text()
         person.read_pages()
-        depth, name = 72 + 16 * (gesture % 5), f"{experiment}-{'trial' if done else 'training'}"
+        trains = gesture == 0 and not done  # the first thing that is felt
+        depth, name = 72 + 16 * (gesture % 5), f"{experiment}-{'training' if trains else 'trial'}"
         if experiment in TWO_FINGERS:
             person.turns = experiment == "cylinder-alignment"
             person.manipulate(name, lambda: counted(session) > done or person.sees_page())
@@ -358,10 +360,9 @@ def do_trials(person, experiment, wanted):
 
 
 def shows_something(folder, name):
-    """Whether something left of the fingerpad's panel is orange like an object or of the colour of a finger."""
-    picture = (255 * matplotlib.image.imread(folder / f"{name}.png")[60:, :1040, :3]).astype(int)
-    red, blue = picture[..., 0], picture[..., 2]
-    return ((red > blue + 60) & (red > 120)).sum() > 50
+    """Whether anything but the sky is below the panels and left of the fingerpad: the sky is the same all along a row. The pointer has some hundred pixels."""
+    picture = (255 * matplotlib.image.imread(folder / f"{name}.png")[130:, :1040, :3]).astype(int)
+    return (abs(picture - numpy.median(picture, axis=1, keepdims=True)).max(axis=2) > 12).sum() > 2000
 
 
 def run_experiment(pincer, screen, experiment):
@@ -383,6 +384,7 @@ def run_experiment(pincer, screen, experiment):
     replay = subprocess.run([pincer, "replay", folder / experiment / "session.db"], capture_output=True, text=True)
     assert replay.returncode == 0 and "The same to the bit" in replay.stdout, replay.stdout + replay.stderr
     if experiment in ONE_FINGER:  # on the mouse the two fingers are seen, unless --blind
+        assert shows_something(folder, f"{experiment}-training"), f"neither object nor finger is seen in training: {experiment}-training.png"
         assert not shows_something(folder, f"{experiment}-trial"), f"object or finger is seen in a counted trial: {experiment}-trial.png"
     if experiment in TWO_FINGERS:
         outcomes = [row[0] for row in rows_of(folder / experiment / "session.db", "select outcome from trial where training = 0")]

@@ -156,9 +156,8 @@ ArcTrialSetup LocalisationExperiment::setupOf(const StudyTrial& trial, const Pla
 StudyPage LocalisationExperiment::introduction(const StudyRun&) const {
   return {"Where does it feel the same?",
           {"The screen shows where the tactor touches your fingerpad, and a ring. Touch the surface and move fore and "
-           "aft until the tactor "
-           "is in",
-           "the ring. Hold still, keep the place in mind and press Enter. Then raise the finger: the surface changes.",
+           "aft until the tactor is in the ring.",
+           "Hold still, keep the place in mind and press Enter. Then raise the finger: the surface changes.",
            "After the tone touch again and move until it feels the same on your fingerpad. Then press Enter."}};
 }
 
