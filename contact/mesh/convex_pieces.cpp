@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "pincer/contact/mesh/union_find.h"
@@ -26,6 +27,48 @@ std::vector<std::shared_ptr<const Polytope>> hullsOfPieces(const TriangleMesh& m
   std::vector<std::shared_ptr<const Polytope>> hulls;
   for (const std::vector<Vec3>& points : pieces)
     hulls.push_back(Polytope::hullOf(points, fmt::format("{}, piece {}", mesh.source, hulls.size())));
+  return hulls;
+}
+
+namespace {
+
+double longestSideOf(const std::vector<Vec3>& points) {
+  Vec3 low = points.front(), high = low;
+  for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  return (high - low).maxCoeff();
+}
+
+// The distance to the nearest face's plane, as far as one is further than `least` from all [m].
+double depthIn(const Polytope& hull, const Vec3& p, double least) {
+  double depth = kInfinity;
+  for (const Polytope::Face& face : hull.faces()) {
+    depth = std::min(depth, face.d - face.n.dot(p));
+    if (depth <= least) break;
+  }
+  return depth;
+}
+
+void requireConvex(const TriangleMesh& part, const Polytope& hull) {
+  constexpr double kShallow = 0.01;  // of its size: dents of drawn and of rounded solids
+  const double least = kShallow * longestSideOf(part.vertices);
+  for (const Vec3& p : part.vertices) {
+    const double depth = depthIn(hull, p, least);
+    if (!(depth > least)) continue;
+    throw InputError(
+        fmt::format("{} isn't convex: its vertex at ({:.4g}, {:.4g}, {:.4g}) m lies {:.3g} mm inside its hull. Cut it "
+                    "into convex parts, or make it a shape of its own: {{\"type\": \"mesh\", \"part\": ..}}.",
+                    part.source, p.x(), p.y(), p.z(), 1e3 * depth));
+  }
+}
+
+}  // namespace
+
+std::vector<std::shared_ptr<const Polytope>> hullsOfGroups(const std::vector<MeshGroup>& groups) {
+  std::vector<std::shared_ptr<const Polytope>> hulls;
+  for (const MeshGroup& group : groups) {
+    hulls.push_back(Polytope::hullOf(group.mesh.vertices, group.mesh.source));
+    requireConvex(group.mesh, *hulls.back());
+  }
   return hulls;
 }
 

@@ -31,6 +31,9 @@ Vec3 unit(const Vec3& n, double largest) {
 MeshBuilder::MeshBuilder(const MeshFile& file, const ReadOptions& options, int first_index)
     : file_(file), options_(options), first_index_(static_cast<std::size_t>(first_index)) {
   mesh_.source = file.name();
+  if (options.metres_per_unit > 0 && std::isfinite(options.metres_per_unit)) return;
+  file.fail(fmt::format("metres per unit = {} must be a finite number above 0: 0.001 for millimetres.",
+                        options.metres_per_unit));
 }
 
 void MeshBuilder::requireFew(std::size_t triangles, std::int32_t place) const {
@@ -86,7 +89,7 @@ void MeshBuilder::beginFace(std::int64_t corners, std::int32_t place) {
   const auto needed = static_cast<std::size_t>(std::max<std::int64_t>(corners, 2));
   triangles_ += needed - 2;
   requireFew(triangles_, place);
-  faces_.push_back({corners_.size(), place, group_});
+  faces_.push_back({corners_.size(), place, group_, part_});
   if (corners >= 3) return;
   leaveOutIfBad(faces_.back(), [&] {
     file_.failAt(place,
@@ -117,6 +120,7 @@ TriangleMesh MeshBuilder::build() {
   }
   dropUnusedFeatures();
   mesh_.triangles.reserve(triangles_);
+  parts_.reserve(triangles_);
   addPolygons();
   PINCER_ASSERT(mesh_.triangle_normals.empty() || mesh_.triangle_normals.size() == mesh_.triangles.size());
   PINCER_ASSERT(mesh_.smoothing_groups.empty() || mesh_.smoothing_groups.size() == mesh_.triangles.size());
@@ -137,6 +141,7 @@ void MeshBuilder::addPolygons() {
 
 void MeshBuilder::cutOff(std::size_t triangles) {
   mesh_.triangles.resize(triangles);
+  parts_.resize(triangles);
   if (!mesh_.triangle_normals.empty()) mesh_.triangle_normals.resize(triangles);
   if (!mesh_.smoothing_groups.empty()) mesh_.smoothing_groups.resize(triangles);
 }
@@ -144,7 +149,11 @@ void MeshBuilder::cutOff(std::size_t triangles) {
 MeshBuilder::Polygon MeshBuilder::polygon(std::size_t face) const {
   const std::size_t first = faces_[face].first_corner;
   const std::size_t end = face + 1 < faces_.size() ? faces_[face + 1].first_corner : corners_.size();
-  return {face + first_index_, faces_[face].place, faces_[face].group, {corners_.data() + first, end - first}};
+  return {face + first_index_,
+          faces_[face].place,
+          faces_[face].group,
+          faces_[face].part,
+          {corners_.data() + first, end - first}};
 }
 
 // Normals that no corner uses, and groups that are all "off", say nothing: programs write "s off" for want of groups.
@@ -264,6 +273,7 @@ void MeshBuilder::addTriangle(const Polygon& face, const CornerTriple& triple) {
                     face.number, number(0), number(1), number(2), textOf(p0), textOf(p1), textOf(p2), kDelete));
   }
   mesh_.triangles.push_back(v);
+  parts_.push_back(face.part);
   if (mesh_.triangle_normals.capacity() > 0) mesh_.triangle_normals.push_back(n);
   if (mesh_.smoothing_groups.capacity() > 0) mesh_.smoothing_groups.push_back(face.group);
 }

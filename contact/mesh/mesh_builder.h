@@ -23,7 +23,7 @@ constexpr const char* kCutOffOrJoined = "The file is cut off or was joined by ha
 
 class MeshBuilder {
  public:
-  // `file` and `options` must outlive this object.
+  // `file` and `options` must outlive this object. Throws InputError for a unit that isn't finite and above 0.
   MeshBuilder(const MeshFile& file, const ReadOptions& options, int first_index);
 
   // Make room; the caller has checked that the file can hold so many. More faces than
@@ -53,8 +53,12 @@ class MeshBuilder {
   }
   // Of the faces begun from here on; 0 for none.
   void setSmoothingGroup(std::int32_t group) { group_ = group; }
+  // Likewise: the part that they are of, by the caller's numbers.
+  void setPart(std::int32_t part) { part_ = part; }
 
   TriangleMesh build();
+  // Of each triangle of the mesh, once it is built.
+  const std::vector<std::int32_t>& parts() const { return parts_; }
 
  private:
   struct Corner {
@@ -65,12 +69,14 @@ class MeshBuilder {
     std::size_t first_corner;
     std::int32_t place;
     std::int32_t group;
+    std::int32_t part;
     bool is_left_out = false;
   };
   struct Polygon {
     std::size_t number;  // as messages count
     std::int32_t place;
     std::int32_t group;
+    std::int32_t part;
     std::span<const Corner> corners;
   };
 
@@ -106,7 +112,8 @@ class MeshBuilder {
   std::vector<Face> faces_;
   std::vector<Corner> corners_;
   std::size_t triangles_ = 0;
-  std::int32_t group_ = 0;
+  std::int32_t group_ = 0, part_ = 0;
+  std::vector<std::int32_t> parts_;
 };
 
 }  // namespace pincer::contact

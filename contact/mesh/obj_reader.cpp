@@ -24,13 +24,22 @@ class ObjParser {
   ObjParser(MeshFile& file, const ReadOptions& options)
       : file_(file), lines_(file, {.comments = true, .continued = true}), builder_(file, options, 1) {}
   TriangleMesh parse();
+  // The parts of the mesh that was parsed.
+  std::vector<MeshGroup> groupsOf(const TriangleMesh& mesh) const;
 
  private:
+  // Names that are in force, in the file's bytes; empty: none.
+  struct Names {
+    std::string_view object, group;
+    std::size_t first_face = 0;
+  };
+
   void readLine();
   void readVertex();
   void readNormal();
   void readTexture();
   void readSmoothingGroup();
+  void readNames();
   void readFace();
   void readCorners(const std::vector<std::string_view>& words);
   CornerForm readCorner(std::string_view word);
@@ -42,6 +51,7 @@ class ObjParser {
   std::size_t textures_ = 0;
   std::int64_t last_texture_ = -1;  // the highest index used, and where
   std::int32_t last_texture_line_ = 0;
+  std::vector<Names> names_ = {{}};  // by MeshBuilder's parts
 };
 
 bool isOneOf(std::string_view word, std::initializer_list<std::string_view> list) {
@@ -64,6 +74,7 @@ void ObjParser::readLine() {
   if (keyword == "vn") return readNormal();
   if (keyword == "vt") return readTexture();
   if (keyword == "s") return readSmoothingGroup();
+  if (keyword == "o" || keyword == "g") return readNames();
   if (isObjKeyword(keyword)) return;
   if (isOneOf(keyword, {"vp", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv",
                         "sp", "end", "con"})) {
@@ -118,6 +129,31 @@ void ObjParser::readSmoothingGroup() {
   if (group < 0 || group > kLast)
     lines_.fail(fmt::format("smoothing group {} is out of range 1 .. {} (0 or \"off\": none).", group, kLast));
   builder_.setSmoothingGroup(static_cast<std::int32_t>(group));
+}
+
+// Several words are one name. Names that no face stood under are forgotten.
+void ObjParser::readNames() {
+  const auto& words = lines_.words();
+  const std::string_view first = words.size() > 1 ? words[1] : "", last = words.back();
+  const auto length = static_cast<std::size_t>(last.data() + last.size() - first.data());
+  const std::string_view name = first.empty() ? first : std::string_view(first.data(), length);
+  Names names = names_.back();
+  if (names.first_face == builder_.faces()) names_.pop_back();
+  (words[0] == "o" ? names.object : names.group) = name;
+  names.first_face = builder_.faces();
+  builder_.setPart(static_cast<std::int32_t>(names_.size()));
+  names_.push_back(names);
+}
+
+// By their objects' names if a face has one, else by their groups'.
+std::vector<MeshGroup> ObjParser::groupsOf(const TriangleMesh& mesh) const {
+  const auto namesOf = [&](std::int32_t part) -> const Names& { return names_[static_cast<std::size_t>(part)]; };
+  const std::vector<std::int32_t>& parts = builder_.parts();
+  const bool has_objects = std::any_of(parts.begin(), parts.end(), [&](auto p) { return !namesOf(p).object.empty(); });
+  std::vector<std::string_view> name_of_triangle;
+  for (const std::int32_t part : parts)
+    name_of_triangle.push_back(has_objects ? namesOf(part).object : namesOf(part).group);
+  return splitByName(mesh, name_of_triangle);
 }
 
 void ObjParser::readFace() {
@@ -182,5 +218,11 @@ bool isObjKeyword(std::string_view word) {
 }
 
 TriangleMesh readObj(MeshFile& file, const ReadOptions& options) { return ObjParser(file, options).parse(); }
+
+std::vector<MeshGroup> readObjGroups(MeshFile& file, const ReadOptions& options) {
+  ObjParser parser(file, options);
+  const TriangleMesh mesh = parser.parse();
+  return parser.groupsOf(mesh);
+}
 
 }  // namespace pincer::contact

@@ -199,6 +199,7 @@ TEST(FrontDoor, TasksUseOnlyNamedBackDoors) {
       "contact/functions/invariants.h",    // asserts
       "contact/mesh/convex_pieces.h",      // scenes' bodies of convex pieces
       "contact/mesh/lathe.h",              // scenes' solids of revolution
+      "contact/mesh/mesh_groups.h",        // scenes' named parts of a file
       "contact/mesh/mesh_pieces.h",        // `pincer mesh`
       "contact/mesh/mesh_writer.h",        // `pincer mesh`
       "contact/mesh/round_edges.h",        // `pincer mesh`

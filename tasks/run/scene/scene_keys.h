@@ -22,7 +22,7 @@ inline constexpr std::array<Word, 13> kBody = {
     "rotation", "trajectory", "velocity", "angular_velocity", "material"};
 inline constexpr std::array<Word, 9> kPart = {"name", "shape",   "pieces",   "position", "rotation",
                                               "mass", "density", "material", "collides"};
-inline constexpr std::array<Word, 3> kPieces = {"file", "units", "scale"};
+inline constexpr std::array<Word, 4> kPieces = {"file", "units", "scale", "by_part"};
 inline constexpr std::array<Word, 2> kCollides = {"as", "with"};
 inline constexpr std::array<Word, 4> kInertia = {"center", "moments", "products", "rotation"};
 inline constexpr std::array<Word, 2> kCombinations = {"geometric_mean", "maximum"};
@@ -90,8 +90,8 @@ inline constexpr std::array<Word, 3> kCylinder = {"type", "radius", "length"};
 inline constexpr std::array<Word, 4> kCylinderWithFlat = {"type", "radius", "length", "flat_distance"};
 inline constexpr std::array<Word, 3> kHalfSpace = {"type", "normal", "point"};
 inline constexpr std::array<Word, 2> kDish = {"type", "radius"};
-inline constexpr std::array<Word, 9> kMesh = {"type",     "file",         "units",        "scale",  "lathe",
-                                              "segments", "crease_angle", "file_normals", "shading"};
-inline constexpr std::array<Word, 5> kConvex = {"type", "points", "file", "units", "scale"};
+inline constexpr std::array<Word, 10> kMesh = {"type",  "file",     "part",         "units",        "scale",
+                                               "lathe", "segments", "crease_angle", "file_normals", "shading"};
+inline constexpr std::array<Word, 6> kConvex = {"type", "points", "file", "part", "units", "scale"};
 
 }  // namespace pincer::tasks::keys

@@ -2,13 +2,16 @@
 
 #include <cmath>
 
+#include "pincer/contact/io/printable.h"
 #include "pincer/contact/mesh/convex_pieces.h"
 #include "pincer/contact/mesh/lathe.h"
+#include "pincer/contact/mesh/mesh_groups.h"
 #include "pincer/contact/mesh_reader.h"
 #include "pincer/contact/mesh_report.h"
 #include "pincer/contact/polytope.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/tasks/run/files/file_limits.h"
+#include "pincer/tasks/run/files/spelling.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
 #include "pincer/tasks/run/scene/scene_parts.h"
 
@@ -46,14 +49,36 @@ void requireSize(const std::vector<Vec3>& points, const JsonValue& json) {
                             outOfRange(ranges::kCoordinate)));
 }
 
-contact::TriangleMesh readTriangles(const JsonValue& json, const std::string& scene_file) {
+struct MeshSource {
+  std::string path;
+  contact::ReadOptions options;
+};
+
+MeshSource readMeshSource(const JsonValue& json, const std::string& scene_file) {
   const std::string& units =
       json.at("units", "The unit of the file's coordinates: \"m\", \"cm\", \"mm\" or \"in\".").text();
   const std::string path =
       besideScene(scene_file, json.at("file", "An OBJ, STL, PLY or OFF file, relative to the scene's folder.").text());
   const JsonValue* scale = json.find("scale");
-  return contact::readMesh(
-      path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(ranges::kScale) : 1)});
+  return {path, {.metres_per_unit = contact::metresPerUnit(units) * (scale ? scale->number(ranges::kScale) : 1)}};
+}
+
+// The one of the file's named parts.
+contact::TriangleMesh namedPart(const MeshSource& source, const std::string& name) {
+  std::vector<contact::MeshGroup> groups = contact::readMeshGroups(source.path, source.options);
+  std::vector<std::string_view> names;
+  for (contact::MeshGroup& group : groups) {
+    if (group.name == name) return std::move(group.mesh);
+    names.push_back(group.name);
+  }
+  throw InputError(fmt::format("{}: no part of it is called \"{}\".{}", printablePath(source.path), printable(name),
+                               suggestion(name, names)));
+}
+
+contact::TriangleMesh readTriangles(const JsonValue& json, const std::string& scene_file) {
+  const MeshSource source = readMeshSource(json, scene_file);
+  const JsonValue* part = json.find("part");
+  return part ? namedPart(source, part->text()) : contact::readMesh(source.path, source.options);
 }
 
 Vec2 readProfilePoint(const JsonValue& json) {
@@ -63,7 +88,7 @@ Vec2 readProfilePoint(const JsonValue& json) {
 }
 
 contact::TriangleMesh readLathe(const JsonValue& json, const JsonValue& profile) {
-  for (const std::string_view key : {"units", "scale", "file_normals"}) {
+  for (const std::string_view key : {"part", "units", "scale", "file_normals"}) {
     if (const JsonValue* other = json.find(key)) other->reject("goes with \"file\" only: a \"lathe\" is in metres.");
   }
   std::vector<Vec2> points;
@@ -119,7 +144,7 @@ std::vector<Vec3> readAnyPoints(const JsonValue& json, const std::string& scene_
   if ((points != nullptr) == (json.find("file") != nullptr))
     json.reject("needs either \"points\" or \"file\": the corners of the solid, in metres, or a file that holds them.");
   if (!points) return readTriangles(json, scene_file).vertices;
-  for (const std::string_view key : {"units", "scale"}) {
+  for (const std::string_view key : {"part", "units", "scale"}) {
     if (const JsonValue* other = json.find(key)) other->reject("goes with \"file\" only: \"points\" are in metres.");
   }
   std::vector<Vec3> corners;
@@ -149,6 +174,20 @@ contact::Shape readConvex(const JsonValue& json, const std::string& scene_file) 
   }
 }
 
+using Hulls = std::vector<std::shared_ptr<const contact::Polytope>>;
+
+Hulls hullsThatHangTogether(const MeshSource& source, const JsonValue& json) {
+  const contact::TriangleMesh triangles = contact::readMesh(source.path, source.options);
+  requireSize(triangles.vertices, json);
+  return contact::hullsOfPieces(triangles);
+}
+
+Hulls namedHulls(const MeshSource& source, const JsonValue& json) {
+  const std::vector<contact::MeshGroup> groups = contact::readMeshGroups(source.path, source.options);
+  for (const contact::MeshGroup& group : groups) requireSize(group.mesh.vertices, json);
+  return contact::hullsOfGroups(groups);
+}
+
 std::span<const std::string_view> keysOf(std::size_t type) {
   constexpr std::array<std::span<const std::string_view>, keys::kShapeTypes.size()> all = {
       keys::kSphere,    keys::kBox,  keys::kCapsule, keys::kCylinder, keys::kCylinderWithFlat,
@@ -176,11 +215,13 @@ contact::Shape readShape(const JsonValue& json, const std::string& file) {
 
 std::vector<contact::Shape> readPieces(const JsonValue& json, const std::string& file) {
   json.allowOnly(keys::kPieces);
+  const JsonValue* by_part = json.find("by_part");
+  const bool are_named = by_part && by_part->boolean();
   try {
-    const contact::TriangleMesh triangles = readTriangles(json, file);
-    requireSize(triangles.vertices, json);
+    const MeshSource source = readMeshSource(json, file);
+    const auto hulls = are_named ? namedHulls(source, json) : hullsThatHangTogether(source, json);
     std::vector<contact::Shape> shapes;
-    for (auto& hull : contact::hullsOfPieces(triangles)) shapes.emplace_back(contact::Convex{std::move(hull)});
+    for (const auto& hull : hulls) shapes.emplace_back(contact::Convex{hull});
     return shapes;
   } catch (const InputError& error) {
     json.reject(fmt::format("can't be used: {}", error.what()));

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "pincer/contact/polytope.h"
+#include "pincer/contact/smooth_mesh.h"
 #include "pincer/tasks/run/scene.h"
 #include "pincer/tasks/run/simulation.h"
 #include "pincer/tests/support/error_of.h"
@@ -81,6 +83,90 @@ TEST(SceneShapes, PiecesOfAFileAreItsPartsThatHangTogether) {
   EXPECT_EQ(scene.bodies[0].shapes[1].name, "block-1");
   EXPECT_NEAR(scene.bodies[0].shapes[1].mass, 0.1, 1e-15);
   EXPECT_LT((buildWorld(scene).world.bodies[0].X_BI.p - Vec3(0.015, 0.005, 0.005)).norm(), 1e-15);
+}
+
+// A cup whose wall has a thickness, open above, and a block as its handle: two objects of one file.
+void writeCup(const std::string& path, bool has_floor = true) {
+  std::ofstream out(path);
+  out << "o Cup\n";
+  constexpr int kSides = 6;
+  for (const auto& [radius, z] : {std::pair{20, 0}, {20, 40}, {16, 40}, {16, 4}}) {
+    for (int i = 0; i < kSides; ++i)
+      out << "v " << radius * math::cos(2 * M_PI * i / kSides) << ' ' << radius * math::sin(2 * M_PI * i / kSides)
+          << ' ' << z << '\n';
+  }
+  for (int k = 0; k < 3 * kSides; k += kSides) {
+    for (int i = 0; i < kSides; ++i) {
+      const int a = k + i + 1, b = k + (i + 1) % kSides + 1;
+      out << "f " << a << ' ' << b << ' ' << b + kSides << ' ' << a + kSides << '\n';
+    }
+  }
+  out << "f 6 5 4 3 2 1\n";
+  if (has_floor) out << "f 19 20 21 22 23 24\n";
+  out << "o Handle\n";
+  for (int k = 0; k < 8; ++k)
+    out << "v " << (k & 1 ? 35 : 20) << ' ' << (k & 2 ? 3 : -3) << ' ' << (k & 4 ? 30 : 10) << '\n';
+  out << "f 25 27 28 26\nf 29 30 32 31\nf 25 26 30 29\nf 27 31 32 28\nf 25 29 31 27\nf 26 28 32 30\n";
+}
+
+TEST(SceneShapes, ANamedPartOfAFileIsAShapeOfItsOwn) {
+  const tests::TemporaryDirectory folder;
+  writeCup(folder / "cup.obj");
+  const std::string
+      cup = R"({"shape": {"type": "mesh", "file": "cup.obj", "units": "mm", "part": "Cup"}, "mass": 0.2}, )",
+      handle = R"({"shape": {"type": "convex", "file": "cup.obj", "units": "mm", "part": "Handle"}, )"
+               R"("mass": 0.02})";
+  const Scene scene = parseScene(sceneOfParts("", cup + handle), folder / "s.json");
+  ASSERT_EQ(scene.bodies[0].shapes.size(), 2u);
+  EXPECT_EQ(std::get<contact::Mesh>(scene.bodies[0].shapes[0].shape).surface->triangles().triangles.size(), 44u);
+  EXPECT_EQ(std::get<contact::Convex>(scene.bodies[0].shapes[1].shape).hull->faces().size(), 6u);
+  const double x = buildWorld(scene).world.bodies[0].X_BI.p.x();
+  EXPECT_NEAR(x, 0.02 * 0.0275 / 0.22, 1e-12) << "the cup's middle is on its axis, the handle's 27.5 mm from it";
+}
+
+TEST(SceneShapes, SayWhatIsWrongWithNamedParts) {
+  const tests::TemporaryDirectory folder;
+  writeCup(folder / "cup.obj");
+  writeCup(folder / "open.obj", false);
+  const auto complaint = [&](const std::string& parts) {
+    const std::string text = tests::errorOf([&] { parseScene(sceneOfParts("", parts), folder / "s.json"); });
+    const std::size_t at = text.find("s.json:1: ");
+    return at == std::string::npos ? text : text.substr(at + 10);
+  };
+  const auto has = [&](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos ? testing::AssertionSuccess() : testing::AssertionFailure() << text;
+  };
+  EXPECT_TRUE(has(complaint(R"({"shape": {"type": "mesh", "file": "cup.obj", "units": "mm", "part": "Handel"}})"),
+                  "cup.obj: no part of it is called \"Handel\". Did you mean \"Handle\"?"));
+  EXPECT_TRUE(has(complaint(R"({"shape": {"type": "mesh", "file": "open.obj", "units": "mm", "part": "Cup"}})"),
+                  "open.obj, part \"Cup\""));
+  EXPECT_TRUE(has(complaint(R"({"pieces": {"file": "cup.obj", "units": "mm", "by_part": true}})"),
+                  "part \"Cup\" isn't convex"));
+  EXPECT_TRUE(
+      has(complaint(R"({"shape": {"type": "convex", "points": [], "part": "Cup"}})"), "goes with \"file\" only"));
+}
+
+// A name parts what vertices don't: a bar of two halves that share four vertices is two pieces by name, one otherwise.
+TEST(SceneShapes, PiecesByPartAreTheNamedOnes) {
+  const tests::TemporaryDirectory folder;
+  std::ofstream out(folder / "bar.obj");
+  for (int k = 0; k < 12; ++k)
+    out << "v " << 10 * (k / 4) << ' ' << (k & 1 ? 10 : 0) << ' ' << (k & 2 ? 10 : 0) << '\n';
+  for (int n = 0; n < 8; n += 4) {
+    out << "g half" << n / 4 << '\n';
+    for (const auto& f : {std::array{1, 3, 4, 2}, std::array{5, 6, 8, 7}, std::array{1, 2, 6, 5},
+                          std::array{3, 7, 8, 4}, std::array{1, 5, 7, 3}, std::array{2, 4, 8, 6}})
+      out << "f " << f[0] + n << ' ' << f[1] + n << ' ' << f[2] + n << ' ' << f[3] + n << '\n';
+  }
+  out.close();
+  const auto shapesOf = [&](const std::string& more) {
+    const std::string parts =
+        R"({"name": "bar", "pieces": {"file": "bar.obj", "units": "mm")" + more + R"(}, "mass": 0.2})";
+    return parseScene(sceneOfParts("", parts), folder / "s.json").bodies[0].shapes.size();
+  };
+  EXPECT_EQ(shapesOf(""), 1u);
+  EXPECT_EQ(shapesOf(R"(, "by_part": false)"), 1u);
+  EXPECT_EQ(shapesOf(R"(, "by_part": true)"), 2u);
 }
 
 TEST(SceneShapes, OfTheManualAreRead) {
