@@ -20,16 +20,18 @@ using contact::SmoothMesh;
 using contact::SurfaceNet;
 using contact::SurfaceVariant;
 
-std::vector<Record> sphereErrors(int level, double position_bound) {
-  constexpr double kR = 0.02, kDepth = 0.002;  // [m]
-  const auto mesh = SmoothMesh::build(contact::icosphere(kR, level));
+constexpr double kBenchBall = 0.02;  // radius of spheres [m]
+
+std::vector<Record> sphereErrors(const contact::TriangleMesh& sphere, double position_bound) {
+  constexpr double kDepth = 0.002;  // [m]
+  const auto mesh = SmoothMesh::build(sphere);
   Random random(1);
   double position = 0, direction = 0;
   for (int i = 0; i < 20000; ++i) {
     BenchFinger finger;
     const Vec3 d = randomDirection(random);
-    const contact::SurfaceContact c = finger.on(*mesh, (kR + kBenchFinger - kDepth) * d).main();
-    position = std::max(position, std::abs(c.p_BS.norm() - kR));
+    const contact::SurfaceContact c = finger.on(*mesh, (kBenchBall + kBenchFinger - kDepth) * d).main();
+    position = std::max(position, std::abs(c.p_BS.norm() - kBenchBall));
     direction = std::max(direction, angleBetween(c.n_B, d));
   }
   return {atMost("position error", 1e6 * position, "um", position_bound),
@@ -94,6 +96,45 @@ std::vector<Record> flatSpeeds(int rows) {
   return speedsAround(contact::cylinderWithFlat(0.025, 0.03, 0.015, 48, rows),
                       {{0.025, 0, 0}, {0.025, 0.02, 0}, {0.025, 0.029, 0}}, crease, 0.999, 1.001);
 }
+// On the rim itself, at three angles over it, and on the end beside it.
+std::vector<RoundPlace> aboutRim() {
+  return {{0.025, 0.03, 0.2}, {0.025, 0.03, 0.8}, {0.025, 0.03, 1.3}, {0.024, 0.03, M_PI / 2}};
+}
+std::vector<Record> rimSpeeds(int rows) {
+  return speedsAround(contact::cylinder(0.025, 0.03, 50, rows), aboutRim(), 0, 0.999, 1.001);
+}
+std::vector<Record> rimBesideCornerSpeeds(int rows) {
+  const double crease = std::acos(0.015 / 0.025) + 1e-3;
+  return speedsAround(contact::cylinderWithFlat(0.025, 0.03, 0.015, 48, rows), aboutRim(), crease, 0.999, 1.001);
+}
+
+// Straight ways of the finger's centre past a corner of a convex solid: the contact never moves faster than the
+// centre, and its normal never turns faster than about the corner.
+std::vector<Record> cornerSpeeds(const contact::TriangleMesh& mesh, const Vec3& corner, const Vec3& outwards) {
+  constexpr double kHeight = 0.0065, kAbout = 0.004, kStep = 1e-5;  // [m]
+  constexpr int kWays = 2000, kSteps = 100;
+  const auto surface = SmoothMesh::build(mesh);
+  Random random(1);
+  double fastest = 0, fastest_turn = 0;
+  for (int i = 0; i < kWays; ++i) {
+    BenchFinger finger;
+    Vec3 C = corner + kHeight * outwards.normalized() + kAbout * random.uniform(-1, 1) * randomDirection(random);
+    const Vec3 step = kStep * randomDirection(random);
+    contact::SurfaceContact last = finger.on(*surface, C).main();
+    for (int k = 0; k < kSteps; ++k) {
+      const contact::SurfaceContact c = finger.on(*surface, C += step).main();
+      const double h = std::min(c.phi, last.phi) + kBenchFinger;
+      fastest = std::max(fastest, (c.p_BS - last.p_BS).norm() / kStep);
+      fastest_turn = std::max(fastest_turn, h * (c.n_B - last.n_B).norm() / kStep);
+      last = c;
+    }
+  }
+  return {atMost("fastest", fastest, "-", 1.01), atMost("fastest turn, of a corner's", fastest_turn, "-", 1.05)};
+}
+std::vector<Record> flatCornerSpeeds(int rows) {
+  return cornerSpeeds(contact::cylinderWithFlat(0.025, 0.03, 0.015, 48, rows), {0.015, 0.02, 0.03}, {1, 0.6, 1});
+}
+
 // A long quad of a cone is no rectangle: its diagonal's middle isn't half way around,
 // and no edge knows that. Refine such meshes.
 std::vector<Record> coneSpeeds(int rows, double off) {
@@ -183,21 +224,36 @@ std::vector<Record> publishedIterations(MeasureContext& context) {
 }  // namespace
 
 std::vector<Measurement> accuracyMeasurements() {
-  return {{"accuracy/sphere-80", [](MeasureContext&) { return sphereErrors(1, 15); }},
-          {"accuracy/sphere-320", [](MeasureContext&) { return sphereErrors(2, 1); }},
-          {"accuracy/cylinder-15deg", [](MeasureContext&) { return cylinderErrors(); }},
-          {"accuracy/speed-cylinder-1-row", [](MeasureContext&) { return cylinderSpeeds(1); }},
-          {"accuracy/speed-cylinder-2-rows", [](MeasureContext&) { return cylinderSpeeds(2); }},
-          {"accuracy/speed-cylinder-8-rows", [](MeasureContext&) { return cylinderSpeeds(8); }},
-          {"accuracy/speed-beside-crease-1-row", [](MeasureContext&) { return flatSpeeds(1); }},
-          {"accuracy/speed-beside-crease-2-rows", [](MeasureContext&) { return flatSpeeds(2); }},
-          {"accuracy/speed-beside-crease-8-rows", [](MeasureContext&) { return flatSpeeds(8); }},
-          {"accuracy/speed-cone-1-row", [](MeasureContext&) { return coneSpeeds(1, 0.14); }},
-          {"accuracy/speed-cone-2-rows", [](MeasureContext&) { return coneSpeeds(2, 0.1); }},
-          {"accuracy/speed-cone-8-rows", [](MeasureContext&) { return coneSpeeds(8, 0.02); }},
-          {"accuracy/speed-uv-sphere", [](MeasureContext&) { return uvSphereSpeeds(); }},
-          {"accuracy/gaps-across-smooth-edges", gapsAcrossEdges},
-          {"accuracy/published-iteration", publishedIterations}};
+  return {
+      {"accuracy/sphere-80", [](MeasureContext&) { return sphereErrors(contact::icosphere(kBenchBall, 1), 15); }},
+      {"accuracy/sphere-320", [](MeasureContext&) { return sphereErrors(contact::icosphere(kBenchBall, 2), 1); }},
+      {"accuracy/uv-sphere", [](MeasureContext&) { return sphereErrors(contact::uvSphere(kBenchBall, 12, 24), 1.5); }},
+      {"accuracy/cylinder-15deg", [](MeasureContext&) { return cylinderErrors(); }},
+      {"accuracy/speed-cylinder-1-row", [](MeasureContext&) { return cylinderSpeeds(1); }},
+      {"accuracy/speed-cylinder-2-rows", [](MeasureContext&) { return cylinderSpeeds(2); }},
+      {"accuracy/speed-cylinder-8-rows", [](MeasureContext&) { return cylinderSpeeds(8); }},
+      {"accuracy/speed-beside-crease-1-row", [](MeasureContext&) { return flatSpeeds(1); }},
+      {"accuracy/speed-beside-crease-2-rows", [](MeasureContext&) { return flatSpeeds(2); }},
+      {"accuracy/speed-beside-crease-8-rows", [](MeasureContext&) { return flatSpeeds(8); }},
+      {"accuracy/speed-rim-1-row", [](MeasureContext&) { return rimSpeeds(1); }},
+      {"accuracy/speed-rim-2-rows", [](MeasureContext&) { return rimSpeeds(2); }},
+      {"accuracy/speed-rim-8-rows", [](MeasureContext&) { return rimSpeeds(8); }},
+      {"accuracy/speed-rim-beside-corner-1-row", [](MeasureContext&) { return rimBesideCornerSpeeds(1); }},
+      {"accuracy/speed-rim-beside-corner-2-rows", [](MeasureContext&) { return rimBesideCornerSpeeds(2); }},
+      {"accuracy/speed-rim-beside-corner-8-rows", [](MeasureContext&) { return rimBesideCornerSpeeds(8); }},
+      {"accuracy/speed-crease-meets-rim-1-row", [](MeasureContext&) { return flatCornerSpeeds(1); }},
+      {"accuracy/speed-crease-meets-rim-2-rows", [](MeasureContext&) { return flatCornerSpeeds(2); }},
+      {"accuracy/speed-crease-meets-rim-8-rows", [](MeasureContext&) { return flatCornerSpeeds(8); }},
+      {"accuracy/speed-box-corner",
+       [](MeasureContext&) {
+         return cornerSpeeds(contact::box({0.02, 0.02, 0.02}), {0.02, 0.02, 0.02}, {1, 1, 1});
+       }},
+      {"accuracy/speed-cone-1-row", [](MeasureContext&) { return coneSpeeds(1, 0.14); }},
+      {"accuracy/speed-cone-2-rows", [](MeasureContext&) { return coneSpeeds(2, 0.1); }},
+      {"accuracy/speed-cone-8-rows", [](MeasureContext&) { return coneSpeeds(8, 0.02); }},
+      {"accuracy/speed-uv-sphere", [](MeasureContext&) { return uvSphereSpeeds(); }},
+      {"accuracy/gaps-across-smooth-edges", gapsAcrossEdges},
+      {"accuracy/published-iteration", publishedIterations}};
 }
 
 }  // namespace pincer::tasks
