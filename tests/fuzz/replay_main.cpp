@@ -40,6 +40,7 @@ constexpr Target kTargets[] = {
     {"json", json},
     {"xml", xml},
     {"mjcf", mjcf},
+    {"urdf", urdf},
     {"scene", scene},
     {"scene_step", scene_step},
     {"scene_schema", scene_schema},

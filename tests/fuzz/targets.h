@@ -27,6 +27,7 @@ void haply_message(Bytes input);  // the texts of the service, each as every kin
 void json(Bytes input);
 void xml(Bytes input);
 void mjcf(Bytes input);        // a robot's file, the scene of it and its world
+void urdf(Bytes input);        // likewise
 void scene(Bytes input);       // and the world of it
 void scene_step(Bytes input);  // likewise, and some ticks
 // scenes drawn from the schema by the bytes: the reader knows every key that the schema has

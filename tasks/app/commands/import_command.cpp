@@ -13,12 +13,13 @@ namespace pincer::tasks {
 namespace {
 
 constexpr const char* kImportExample = R"(
-Prints a robot's MJCF file as a scene (docs/robots.md), and says on standard error what of the file has no
+Prints a robot's file, MJCF or URDF, as a scene (docs/robots.md), and says on standard error what of the file has no
 effect here. Files that it names lie in its folder or below; --allow names further folders.
 
 Examples:
   pincer import hand.xml > hand.json
-  pincer import hand.xml --keyframe home --report text)";
+  pincer import hand.xml --keyframe home --report text
+  pincer import arm.urdf > arm.json)";
 
 struct ImportArguments {
   std::string file, report;
@@ -27,7 +28,7 @@ struct ImportArguments {
 };
 
 int runImport(const ImportArguments& arguments) {
-  RobotImport import = readMjcf(arguments.file, arguments.allowed);
+  RobotImport import = readRobotFile(arguments.file, arguments.allowed);
   if (arguments.report == "json") {
     print("{}", importJson(import));
     return kExitOk;
@@ -46,8 +47,8 @@ int runImport(const ImportArguments& arguments) {
 
 void addImportCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<ImportArguments>();
-  CLI::App* command = app.add_subcommand("import", "A robot's MJCF file as a scene");
-  command->add_option("file", arguments->file, "Robot (MJCF, .xml)")->required();
+  CLI::App* command = app.add_subcommand("import", "A robot's MJCF or URDF file as a scene");
+  command->add_option("file", arguments->file, "Robot (MJCF, .xml, or URDF, .urdf)")->required();
   command->add_option("--keyframe", arguments->options.keyframe,
                       "Where it starts and what its drives are told; else as drawn");
   command->add_option("--allow", arguments->allowed, "Further folders that its files may lie in")

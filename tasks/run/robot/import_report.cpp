@@ -33,14 +33,14 @@ std::string counted(std::size_t count, std::string_view one, std::string_view ma
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
-void writePose(const Pose& X, JsonWriter& json) { json.key("position").value(X.p).key("quaternion").value(X.q); }
+void addPose(const Pose& X, JsonWriter& json) { json.key("position").value(X.p).key("quaternion").value(X.q); }
 
 void writeBody(const RobotBody& body, const Pose& X_WB, JsonWriter& json) {
   const Mat3 R = X_WB.q.toRotationMatrix(), I = R * body.inertia.I_BBcm * R.transpose();
   json.beginObject().key("name").value(body.name).key("mass").value(body.inertia.mass);
   json.key("center").value(Vec3(X_WB * body.inertia.p_BBcm)).key("moments").value(Vec3(I.diagonal()));
   json.key("products").value(Vec3(I(0, 1), I(0, 2), I(1, 2)));
-  writePose(X_WB, json);
+  addPose(X_WB, json);
   json.endObject();
 }
 
@@ -61,7 +61,7 @@ void writeKeyframes(const Robot& robot, JsonWriter& json) {
     json.beginObject().key("name").value(key.name).key("bodies").beginArray();
     for (const Pose& X : bodyPoses(robot, key.q.empty() ? drawnCoordinates(robot) : key.q)) {
       json.beginObject();
-      writePose(X, json);
+      addPose(X, json);
       json.endObject();
     }
     json.endArray().endObject();

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "pincer/tasks/run/robot/mjcf.h"
+#include "pincer/tasks/run/robot/robot_import.h"
 
 namespace pincer::tasks {
 

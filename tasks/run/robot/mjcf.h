@@ -7,15 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "pincer/tasks/run/robot/import_notes.h"
-#include "pincer/tasks/run/robot/robot.h"
+#include "pincer/tasks/run/robot/robot_import.h"
 
 namespace pincer::tasks {
-
-struct RobotImport {
-  Robot robot;
-  ImportNotes notes;
-};
 
 // Files that it names lie in its folder or below, or in one of `allowed_folders`. Throws
 // InputError: file, line, element, problem, remedy.

@@ -49,6 +49,7 @@ class Includer {
     if (seen_.size() > kMostIncludes)
       include.reject(fmt::format("is one include too many: a robot has at most {}.", kMostIncludes));
     XmlElement root = readXml(path);
+    refuseText(root);
     open_.push_back(real(path));
     expand(root);
     open_.pop_back();
@@ -58,59 +59,6 @@ class Includer {
   const ModelFolder& folder_;
   std::vector<std::string> open_;  // from the main file to this one
   std::set<std::string> seen_;
-};
-
-// Holds every element and attribute against the grammar.
-class Checker {
- public:
-  explicit Checker(ImportNotes& notes) : notes_(notes) {}
-
-  void check(const XmlElement& element, const GrammarRow& row) {
-    checkAttributes(element, row);
-    for (const XmlElement& child : element.children) checkChild(child, row);
-  }
-
- private:
-  void checkAttributes(const XmlElement& element, const GrammarRow& row) {
-    for (const XmlAttribute& attribute : element.attributes) {
-      Verdict verdict;
-      if (!findAttribute(row, attribute.name, verdict)) {
-        element.reject(fmt::format("has the attribute \"{}\", which MJCF doesn't know there.{}", attribute.name,
-                                   spelling(row, attribute.name)));
-      }
-      if (verdict == Verdict::kIgnored)
-        notes_.add(fmt::format("{} {}", element.tag, attribute.name), "", element.place());
-      if (verdict == Verdict::kRefused)
-        element.reject(fmt::format("has the attribute \"{}\", which isn't taken. {}", attribute.name, row.reason));
-    }
-  }
-
-  void checkChild(const XmlElement& child, const GrammarRow& row) {
-    const GrammarRow* found = findRow(row.name, child.tag);
-    if (!found) child.reject(fmt::format("isn't an element that MJCF knows within <{}>.", row.tag));
-    switch (found->verdict) {
-      case Verdict::kLooks:
-        return;
-      case Verdict::kIgnored:
-        notes_.add(child.tag, "", child.place(), std::max(1, static_cast<int>(child.children.size())));
-        return;
-      case Verdict::kRefused:
-        // A default has no effect before an element uses it, and that one is refused.
-        if (row.name == "default") return notes_.add(fmt::format("default {}", child.tag), "", child.place());
-        child.reject(fmt::format("isn't taken. {}", found->reason));
-      case Verdict::kRead:
-        return check(child, *found);
-    }
-  }
-
-  static std::string spelling(const GrammarRow& row, const std::string& name) {
-    std::vector<std::string_view> words;
-    for (const std::string_view list : {row.read, row.looks, row.ignored, row.refused})
-      forEachWord(list, [&](auto w) { words.push_back(w); });
-    return suggestion(name, words);
-  }
-
-  ImportNotes& notes_;
 };
 
 void readCompilerElement(const XmlElement& element, Compiler& c) {
@@ -141,8 +89,8 @@ void readCompilerElement(const XmlElement& element, Compiler& c) {
 
 // Actuators of all kinds change one and the same default.
 std::string defaultKind(const XmlElement& element) {
-  const GrammarRow* row = findRow("default", element.tag);
-  const bool is_actuator = findRow("actuator", element.tag) != nullptr;
+  const GrammarRow* row = rowOf("default", element.tag);
+  const bool is_actuator = rowOf("actuator", element.tag) != nullptr;
   return is_actuator ? "actuator" : std::string(row->name);
 }
 
@@ -155,7 +103,7 @@ class ClassReader {
     for (const XmlElement& child : element.children) {
       if (child.tag == "default") {
         read(child, index);
-      } else if (findRow("default", child.tag)->verdict == Verdict::kRead) {
+      } else if (rowOf("default", child.tag)->verdict == Verdict::kRead) {
         classes_[static_cast<std::size_t>(index)].elements[defaultKind(child)].push_back(child);
       }
     }
@@ -201,14 +149,10 @@ int classNamed(const Document& document, const std::string& name, const XmlEleme
 
 Document readDocument(const std::string& path, const std::vector<std::string>& allowed_folders) {
   Document document{path, readXml(path), {}, {}, ModelFolder(path, allowed_folders), {}};
-  if (document.root.tag == "robot") {
-    document.root.reject(
-        "is the root of a URDF file, which isn't read here. MuJoCo's program `compile` makes MJCF of it: compile "
-        "robot.urdf robot.xml.");
-  }
-  if (document.root.tag != "mujoco") document.root.reject("isn't <mujoco>: this is no MJCF file.");
+  if (document.root.tag != "mujoco")
+    document.root.reject("isn't <mujoco>: this is no MJCF file. URDF files end in .urdf.");
   Includer(document.folder, path).expand(document.root);
-  Checker(document.notes).check(document.root, *findRow("", "mujoco"));
+  checkGrammar({"MJCF", rows(), "default"}, document.root, document.notes);
   for (const XmlElement* element : sections(document, "compiler")) readCompilerElement(*element, document.compiler);
   ClassReader classes(document.classes);
   for (const XmlElement* element : sections(document, "default")) classes.read(*element, -1);

@@ -54,7 +54,7 @@ std::vector<const XmlElement*> sections(const Document& document, std::string_vi
 
 // The row of an element that stands in `parent_row`, once it was checked.
 inline std::string_view rowName(std::string_view parent_row, const XmlElement& element) {
-  return findRow(parent_row, element.tag)->name;
+  return rowOf(parent_row, element.tag)->name;
 }
 
 }  // namespace pincer::tasks::mjcf

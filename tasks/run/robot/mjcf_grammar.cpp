@@ -1,6 +1,5 @@
 #include "pincer/tasks/run/robot/mjcf_grammar.h"
 
-#include <algorithm>
 #include <array>
 
 namespace pincer::tasks::mjcf {
@@ -154,30 +153,8 @@ constexpr std::array kRows = {
     GrammarRow{"key", "key", "keyframe", kRead, "name time qpos qvel ctrl", "", "act mpos mquat"},
 };
 
-bool has(std::string_view words, std::string_view word) {
-  bool found = false;
-  forEachWord(words, [&](std::string_view w) { found = found || w == word; });
-  return found;
-}
-
 }  // namespace
 
-std::span<const GrammarRow> grammar() { return kRows; }
-
-const GrammarRow* findRow(std::string_view parent_row, std::string_view tag) {
-  const auto row = std::find_if(kRows.begin(), kRows.end(), [&](const GrammarRow& r) {
-    return r.tag == tag && (parent_row.empty() ? r.parents.empty() : has(r.parents, parent_row));
-  });
-  return row == kRows.end() ? nullptr : &*row;
-}
-
-bool findAttribute(const GrammarRow& row, std::string_view attribute, Verdict& verdict) {
-  const std::array lists = {std::pair{row.read, Verdict::kRead}, std::pair{row.looks, Verdict::kLooks},
-                            std::pair{row.ignored, Verdict::kIgnored}, std::pair{row.refused, Verdict::kRefused}};
-  const auto list = std::find_if(lists.begin(), lists.end(), [&](const auto& l) { return has(l.first, attribute); });
-  if (list == lists.end()) return false;
-  verdict = list->second;
-  return true;
-}
+std::span<const GrammarRow> rows() { return kRows; }
 
 }  // namespace pincer::tasks::mjcf

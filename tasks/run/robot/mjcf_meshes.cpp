@@ -3,24 +3,13 @@
 
 #include <filesystem>
 
-#include "pincer/contact/mesh_reader.h"
 #include "pincer/tasks/run/robot/mjcf_parts.h"
+#include "pincer/tasks/run/robot/model_mesh.h"
 
 namespace pincer::tasks::mjcf {
 namespace {
 
 constexpr std::size_t kMostInlineNumbers = 3000000;  // of one mesh that is written out
-
-contact::TriangleMesh readFile(const XmlElement& element, const std::string& path) {
-  contact::ReadOptions options;
-  options.degenerate = contact::Degenerate::keep;
-  options.left_out = [](const std::string&) {};  // a mesh here is a cloud of corners, or a sum of triangles
-  try {
-    return contact::readMesh(path, options);
-  } catch (const InputError& error) {
-    element.reject(fmt::format("can't use its file: {}", error.what()));
-  }
-}
 
 contact::TriangleMesh readInline(const Values& values) {
   contact::TriangleMesh mesh;
@@ -43,18 +32,14 @@ contact::TriangleMesh readInline(const Values& values) {
   return mesh;
 }
 
-// Of the file's corners to those that geoms have: moved, turned and scaled; a mirrored one keeps its outside outside.
+// Of the file's corners to those that geoms have: moved, turned and scaled.
 void place(const Values& values, contact::TriangleMesh& mesh) {
   const Vec3 reference = values.vector("refpos", Vec3::Zero()), scale = values.vector("scale", Vec3::Ones());
   const std::vector<double> turn = values.numbers("refquat", 4, 4);
   const Quat back = turn.empty() ? Quat::Identity() : Quat(turn[0], turn[1], turn[2], turn[3]).normalized().conjugate();
   if (!(scale.cwiseAbs().minCoeff() > 0)) values.reject("scale", "flattens the mesh: no factor may be 0.");
-  for (Vec3& v : mesh.vertices) v = (back * (v - reference)).cwiseProduct(scale);
-  if (scale.prod() < 0) {
-    for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
-  }
-  mesh.normals.clear();
-  mesh.triangle_normals.clear();
+  for (Vec3& v : mesh.vertices) v = back * (v - reference);
+  scaleMesh(scale, mesh);
 }
 
 RobotMesh readMeshElement(const Reading& reading, const XmlElement& element) {
@@ -66,7 +51,7 @@ RobotMesh readMeshElement(const Reading& reading, const XmlElement& element) {
   if (mesh.name.empty()) element.reject("needs a name, or a file to be named after.");
   if (reading.compiler().strip_path) file = std::filesystem::path(file).filename().string();
   if (!file.empty()) mesh.file = reading.document.folder.find(element, reading.compiler().mesh_folder, file);
-  mesh.triangles = file.empty() ? readInline(values) : readFile(element, mesh.file);
+  mesh.triangles = file.empty() ? readInline(values) : readModelMesh(element, mesh.file);
   mesh.triangles.source = file.empty() ? element.place() : mesh.file;
   place(values, mesh.triangles);
   constexpr std::string_view kWords[] = {"convex", "legacy", "exact", "shell"};  // by MeshInertia

@@ -4,29 +4,21 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "pincer/contact/elementary.h"
-#include "pincer/tasks/run/files/spelling.h"
 #include "pincer/tasks/run/robot/mjcf_document.h"
 
 namespace pincer::tasks::mjcf {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";  // between the numbers of an attribute
 // Ways to say how an element is turned; it may have one of them.
 constexpr std::array<std::string_view, 5> kOrientations = {"quat", "axisangle", "xyaxes", "zaxis", "euler"};
 constexpr double kShortest = 1e-14;  // of a direction: MuJoCo's least length
 
 double radians(double angle, const Compiler& compiler) {
   return compiler.degrees ? angle * (std::numbers::pi / 180) : angle;
-}
-
-Quat turn(const Vec3& axis, double angle) {
-  const Vec3 v = math::sin(0.5 * angle) * axis;
-  return {math::cos(0.5 * angle), v[0], v[1], v[2]};
 }
 
 // Small letters turn about the axes as they have been turned, capital ones about those that stand still.
@@ -36,7 +28,7 @@ Quat eulerQuat(const std::vector<double>& angles, const Compiler& compiler) {
     const char letter = compiler.euler_order[i];
     const bool moves = letter >= 'x';
     const Vec3 axis = Vec3::Unit(moves ? letter - 'x' : letter - 'X');
-    const Quat step = turn(axis, radians(angles[i], compiler));
+    const Quat step = quatOfAxisAngle(axis, radians(angles[i], compiler));
     q = moves ? q * step : step * q;
   }
   return q;
@@ -47,13 +39,13 @@ Quat zaxisQuat(const Vec3& z) {
   const Vec3 axis = Vec3::UnitZ().cross(z);
   const double s = axis.norm();
   if (s < kShortest) return z[2] > 0 ? Quat::Identity() : Quat(0, 1, 0, 0);
-  return turn(axis / s, math::atan2(s, z[2]));
+  return quatOfAxisAngle(axis / s, math::atan2(s, z[2]));
 }
 
 }  // namespace
 
 Values::Values(const Document& document, const XmlElement& element, std::string_view kind, int class_index)
-    : levels_{&element} {
+    : XmlValues(element) {
   if (const std::string* name = element.find("class")) class_index = classNamed(document, *name, element);
   for (int c = class_index; c >= 0; c = document.classes[static_cast<std::size_t>(c)].parent) {
     const auto& elements = document.classes[static_cast<std::size_t>(c)].elements;
@@ -61,89 +53,6 @@ Values::Values(const Document& document, const XmlElement& element, std::string_
     if (of_kind == elements.end()) continue;
     for (auto e = of_kind->second.rbegin(); e != of_kind->second.rend(); ++e) levels_.push_back(&*e);
   }
-}
-
-const XmlElement* Values::levelOf(std::string_view name) const {
-  const auto at =
-      std::find_if(levels_.begin(), levels_.end(), [&](const XmlElement* e) { return e->find(name) != nullptr; });
-  return at == levels_.end() ? nullptr : *at;
-}
-
-void Values::reject(std::string_view name, std::string_view problem) const {
-  const XmlElement* level = levelOf(name);
-  if (!level) element().reject(fmt::format("{} {}", name, problem));
-  level->reject(fmt::format("{}=\"{:.60}\" {}", name, *level->find(name), problem));
-}
-
-std::string Values::text(std::string_view name, const std::string& fallback) const {
-  const XmlElement* level = levelOf(name);
-  return level ? *level->find(name) : fallback;
-}
-
-std::string Values::required(std::string_view name) const {
-  const std::string value = text(name);
-  if (value.empty()) element().reject(fmt::format("needs the attribute \"{}\".", name));
-  return value;
-}
-
-bool Values::boolean(std::string_view name, bool fallback) const {
-  constexpr std::string_view kWords[] = {"false", "true"};  // by value
-  return oneOf(name, kWords, fallback) == 1;
-}
-
-int Values::oneOf(std::string_view name, std::span<const std::string_view> words, int fallback) const {
-  const XmlElement* level = levelOf(name);
-  if (!level) return fallback;
-  const auto at = std::find(words.begin(), words.end(), *level->find(name));
-  if (at == words.end())
-    reject(name, fmt::format("is none of the words that go there.{}", suggestion(*level->find(name), words)));
-  return static_cast<int>(at - words.begin());
-}
-
-double Values::number(std::string_view name, double fallback) const {
-  const std::vector<double> values = numbers(name, 1, 1);
-  return values.empty() ? fallback : values[0];
-}
-
-int Values::whole(std::string_view name, int fallback) const {
-  const double value = number(name, fallback);
-  if (!(std::abs(value) < 2147483648.0) || value != std::floor(value)) reject(name, "isn't a whole number of 32 bits.");
-  return static_cast<int>(value);
-}
-
-std::vector<double> Values::numbers(std::string_view name, std::size_t least, std::size_t most) const {
-  const XmlElement* level = levelOf(name);
-  if (!level) return {};
-  const std::string& text = *level->find(name);
-  std::vector<double> values;
-  for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string::npos;
-       at = text.find_first_not_of(kBlanks, at)) {
-    const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
-    const std::size_t begin = text[at] == '+' ? at + 1 : at;
-    double value = 0;
-    const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-    const bool is_number = error == std::errc() && stop == text.data() + end && std::isfinite(value);
-    if (!is_number)
-      reject(name, fmt::format("has \"{:.30}\", which isn't a finite number.", text.substr(at, end - at)));
-    values.push_back(value);
-    at = end;
-  }
-  if (values.size() < least || values.size() > most) {
-    const std::string wanted = least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
-    reject(name, fmt::format("has {} numbers where {} are wanted.", values.size(), wanted));
-  }
-  return values;
-}
-
-Vec3 Values::vector(std::string_view name, const Vec3& fallback) const {
-  const std::vector<double> v = numbers(name, 3, 3);
-  return v.empty() ? fallback : Vec3(v[0], v[1], v[2]);
-}
-
-std::optional<Vec2> Values::range(std::string_view name) const {
-  const std::vector<double> v = numbers(name, 2, 2);
-  if (v.empty()) return std::nullopt;
-  return Vec2(v[0], v[1]);
 }
 
 std::optional<Vec2> Values::limits(std::string_view name, std::string_view switch_name, bool autolimits) const {
@@ -168,7 +77,7 @@ Vec3 Values::direction(std::string_view name, const double* v) const {
 Quat Values::turnOf(std::string_view name, const Compiler& compiler) const {
   const std::size_t count = name == "xyaxes" ? 6 : name == "quat" || name == "axisangle" ? 4 : 3;
   const std::vector<double> v = numbers(name, count, count);
-  if (name == "axisangle") return turn(direction(name, v.data()), radians(v[3], compiler));
+  if (name == "axisangle") return quatOfAxisAngle(direction(name, v.data()), radians(v[3], compiler));
   if (name == "zaxis") return zaxisQuat(direction(name, v.data()));
   if (name == "euler") return eulerQuat(v, compiler);
   if (name == "quat") {

@@ -49,4 +49,35 @@ std::string ModelFolder::find(const XmlElement& element, const std::string& fold
   return path.lexically_normal().string();
 }
 
+std::string ModelFolder::findUri(const XmlElement& element, const std::string& uri) const {
+  const std::size_t scheme_end = uri.find("://");
+  if (scheme_end == std::string::npos) return find(element, "", uri);
+  const std::string scheme = uri.substr(0, scheme_end), rest = uri.substr(scheme_end + 3);
+  if (scheme == "package" || scheme == "model") return findPackaged(element, uri, rest);
+  if (scheme == "file") return find(element, "", rest);
+  element.reject(fmt::format(
+      "names \"{}\", and files are found by package://NAME/PATH, file://PATH or a path beside the model only.", uri));
+}
+
+std::string ModelFolder::findPackaged(const XmlElement& element, const std::string& uri,
+                                      const std::string& in_package) const {
+  const fs::path path(in_package), package = path.empty() ? path : *path.begin();
+  const fs::path within = path.lexically_relative(package);
+  std::vector<fs::path> places;
+  for (const std::string& folder : allowed_) {
+    places.push_back(fs::path(folder) / path);
+    places.push_back(fs::path(folder) / within);
+  }
+  for (fs::path above = allowed_.front(); above.has_relative_path(); above = above.parent_path()) {
+    if (above.filename() == package) places.push_back(above / within);
+  }
+  std::error_code error;
+  for (const fs::path& place : places) {
+    if (fs::exists(place, error)) return find(element, "", place.string());
+  }
+  element.reject(
+      fmt::format("names the file \"{}\", and there is neither {} nor {}. Copy it there, or correct the name.", uri,
+                  places[0].string(), places[1].string()));
+}
+
 }  // namespace pincer::tasks

@@ -1,5 +1,5 @@
-// robot: a robot as its file describes it: names, frames and numbers, without JSON and without an engine. mjcf.h
-// reads one, robot_scene.h makes a scene of it.
+// robot: a robot as its file describes it: names, frames and numbers, without JSON and without an engine.
+// robot_import.h reads one, robot_scene.h makes a scene of it.
 //
 // Lengths in metres, angles in radians, whatever the file's units. Frames: P of the
 // parent body, B of the body, G of a geom.

@@ -1,7 +1,7 @@
 // xml_tree: an XML file as a tree of elements, each with the file and line where it stands.
 //
-// Refused, with file and line: what isn't XML (an attribute given twice, too), text between elements, more than
-// kMostXmlElements elements, more than kDeepestXml levels. Files are regular files of at most 16 MB.
+// Refused, with file and line: what isn't XML (an attribute given twice, too), more than kMostXmlElements elements,
+// more than kDeepestXml levels. Files are regular files of at most 16 MB.
 #pragma once
 #include <string>
 #include <string_view>
@@ -22,6 +22,7 @@ struct XmlElement {
   std::string tag;
   std::vector<XmlAttribute> attributes;  // in the file's order
   std::vector<XmlElement> children;
+  std::string text;  // the first one between its elements; checkGrammar (robot_grammar.h) refuses it where it matters
   std::string file;
   int line = 0;
 

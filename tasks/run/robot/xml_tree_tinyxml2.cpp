@@ -19,7 +19,7 @@ class TreeBuilder {
   explicit TreeBuilder(const std::string& file) : file_(file) {}
 
   XmlElement build(const tinyxml2::XMLElement& from, int depth) {
-    XmlElement element{from.Name(), {}, {}, file_, from.GetLineNum()};
+    XmlElement element{from.Name(), {}, {}, {}, file_, from.GetLineNum()};
     if (++count_ > kMostXmlElements)
       element.reject(fmt::format("is one element too many: a file has at most {}.", kMostXmlElements));
     if (depth > kDeepestXml) element.reject(fmt::format("lies deeper than {} levels.", kDeepestXml));
@@ -39,9 +39,8 @@ class TreeBuilder {
     for (const auto* child = from.FirstChild(); child; child = child->NextSibling()) {
       if (const auto* inner = child->ToElement()) {
         element.children.push_back(build(*inner, depth + 1));
-      } else if (child->ToText()) {
-        element.reject(fmt::format("holds the text \"{}\" between its elements. A robot's numbers stand in attributes.",
-                                   printable(child->Value(), 40)));
+      } else if (child->ToText() && element.text.empty()) {
+        element.text = child->Value();
       }
     }
   }

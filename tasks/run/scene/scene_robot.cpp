@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "pincer/tasks/run/robot/import_report.h"
 #include "pincer/tasks/run/robot/robot_scene.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
@@ -13,18 +11,13 @@ namespace pincer::tasks {
 namespace {
 
 std::string sceneText(const std::string& path, const RobotSceneOptions& options, std::string& remarks) {
-  RobotImport import = readMjcf(path);
+  RobotImport import = readRobotFile(path);
   const std::string text = sceneOfRobot(import.robot, options, import.notes);
   if (!import.notes.all().empty()) remarks += importText(import);
   return text;
 }
 
 }  // namespace
-
-bool isRobotFile(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  return extension == ".xml" || extension == ".mjcf" || extension == ".urdf";
-}
 
 std::string robotSceneText(const std::string& path, std::string& remarks) { return sceneText(path, {}, remarks); }
 
@@ -42,7 +35,7 @@ RobotJson readRobot(const JsonValue& json, Scene& scene) {
   }
   options.X_WR = {quatFromRotationVector(readVector(json, "rotation", ranges::kRotation)),
                   readVector(json, "position", ranges::kCoordinate)};
-  const JsonValue& file = json.at("file", "The robot's MJCF file, relative to the scene's folder.");
+  const JsonValue& file = json.at("file", "The robot's MJCF or URDF file, relative to the scene's folder.");
   const std::string path = besideScene(scene.file, file.text());
   try {
     return {options.prefix, parseJson(sceneText(path, options, scene.remarks), path + " (as a scene)")};

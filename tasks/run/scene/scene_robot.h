@@ -3,12 +3,10 @@
 #include <string>
 
 #include "pincer/tasks/run/files/strict_json.h"
+#include "pincer/tasks/run/robot/robot_import.h"
 #include "pincer/tasks/run/scene.h"
 
 namespace pincer::tasks {
-
-// True for the files that robots come in: .xml, .mjcf, .urdf. Of the last the reader says what to do with it.
-bool isRobotFile(const std::string& path);
 
 // A robot's file as the text of a scene; what of it has no effect is appended to
 // `remarks`, as lines for people. Throws InputError.

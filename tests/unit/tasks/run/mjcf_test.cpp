@@ -275,7 +275,7 @@ TEST_F(MjcfReader, WhatHasNoEffectIsCounted) {
   ASSERT_EQ(notes.all().size(), 2u);
   EXPECT_EQ(notes.all()[0].what, "geom solref");
   EXPECT_EQ(notes.all()[0].count, 2);
-  EXPECT_EQ(notes.all()[1].what, "sensor");
+  EXPECT_EQ(notes.all()[1].what, "sensor clock");
   EXPECT_EQ(notes.all()[1].count, 2);
 }
 
@@ -318,15 +318,15 @@ TEST_F(MjcfReader, MomentsAreBalancedWhereTheCompilerSaysSo) {
 }
 
 TEST(MjcfGrammar, HasEveryAttributeOnce) {
-  for (const mjcf::GrammarRow& row : mjcf::grammar()) {
+  for (const GrammarRow& row : mjcf::rows()) {
     std::set<std::string> seen;
     for (const std::string_view list : {row.read, row.looks, row.ignored, row.refused})
-      mjcf::forEachWord(
-          list, [&](std::string_view w) { EXPECT_TRUE(seen.insert(std::string(w)).second) << row.name << " " << w; });
-    mjcf::forEachWord(row.parents, [&](std::string_view parent) {
-      EXPECT_EQ(mjcf::findRow(parent, row.tag), &row) << row.tag << " within " << parent << " is two rows";
+      forEachWord(list,
+                  [&](std::string_view w) { EXPECT_TRUE(seen.insert(std::string(w)).second) << row.name << " " << w; });
+    forEachWord(row.parents, [&](std::string_view parent) {
+      EXPECT_EQ(mjcf::rowOf(parent, row.tag), &row) << row.tag << " within " << parent << " is two rows";
     });
-    EXPECT_EQ(row.verdict == mjcf::Verdict::kRefused, row.read.empty() && !row.reason.empty())
+    EXPECT_EQ(row.verdict == Verdict::kRefused, row.read.empty() && !row.reason.empty())
         << row.name << ": a refusal says why";
   }
 }
@@ -379,17 +379,17 @@ TEST(MjcfGrammar, KnowsThePublishedGrammar) {
   ASSERT_GT(published.elements.size(), 100u);
   int attributes = 0;
   std::set<std::string> seen;
-  const std::function<void(const std::string&, const mjcf::GrammarRow&)> check = [&](const std::string& name,
-                                                                                     const mjcf::GrammarRow& row) {
-    if (row.verdict != mjcf::Verdict::kRead || !seen.insert(std::string(row.name) + " " + name).second) return;
+  const std::function<void(const std::string&, const GrammarRow&)> check = [&](const std::string& name,
+                                                                               const GrammarRow& row) {
+    if (row.verdict != Verdict::kRead || !seen.insert(std::string(row.name) + " " + name).second) return;
     const std::function<void(const std::string&)> checkAttributes = [&](const std::string& of) {
       for (const std::string& attribute : published.elements.at(of).attributes) {
         if (attribute.rfind("use ", 0) == 0) {
           checkAttributes(attribute);
           continue;
         }
-        mjcf::Verdict verdict;
-        EXPECT_TRUE(mjcf::findAttribute(row, attribute, verdict)) << row.name << " " << attribute;
+        Verdict verdict;
+        EXPECT_TRUE(findAttribute(row, attribute, verdict)) << row.name << " " << attribute;
         ++attributes;
       }
     };
@@ -397,12 +397,12 @@ TEST(MjcfGrammar, KnowsThePublishedGrammar) {
     for (const std::string& listed : published.elements.at(name).children) {
       // the world is a body there
       const std::string child = name == "mujoco" && listed == "body" ? "worldbody" : listed;
-      const mjcf::GrammarRow* inner = mjcf::findRow(row.name, published.elements.at(child).tag);
+      const GrammarRow* inner = mjcf::rowOf(row.name, published.elements.at(child).tag);
       EXPECT_NE(inner, nullptr) << child << " within " << row.name;
       if (inner) check(child, *inner);
     }
   };
-  check("mujoco", *mjcf::findRow("", "mujoco"));
+  check("mujoco", *mjcf::rowOf("", "mujoco"));
   EXPECT_GT(attributes, 200);
 }
 

@@ -101,16 +101,6 @@ TEST_F(RobotScenes, ImportedRunAndNamedInASceneARobotGivesTheSameBits) {
   EXPECT_EQ(engine::hashOf(as_it_is.state().world), engine::hashOf(named.state().world));
 }
 
-// It was called bad JSON.
-TEST_F(RobotScenes, AUrdfFileIsCalledWhatItIs) {
-  const std::string path = write("arm.urdf", R"(<robot name="arm"><link name="base"/></robot>)");
-  std::string remarks;
-  ASSERT_TRUE(isRobotFile(path));
-  const std::string message = tests::errorOf([&] { robotSceneText(path, remarks); });
-  EXPECT_NE(message.find("arm.urdf:1: <robot> is the root of a URDF file"), std::string::npos) << message;
-  EXPECT_NE(message.find("compile robot.urdf robot.xml"), std::string::npos) << message;
-}
-
 // A slider's way was in "rad or m".
 TEST_F(RobotScenes, QuantitiesAreInTheUnitOfTheirJoint) {
   const Scene scene = sceneOfText(R"(<mujoco><worldbody>

@@ -10,6 +10,7 @@
 
 #include "pincer/contact/io/input_file.h"
 #include "pincer/contact/io/printable.h"
+#include "pincer/tasks/run/robot/robot_grammar.h"
 #include "pincer/tests/support/error_of.h"
 #include "pincer/tests/support/temporary_directory.h"
 
@@ -60,12 +61,20 @@ TEST(XmlTree, RefusesWhatIsntXml) {
   EXPECT_EQ(complaint("<!-- nothing -->"), "robot.xml: has no element.");
 }
 
-TEST(XmlTree, RefusesTextBetweenElements) {
-  const std::string said = complaint("<a>\n  <b>1 2 3</b></a>");
-  EXPECT_NE(said.find("robot.xml:2: <b> holds the text \"1 2 3\""), std::string::npos) << said;
-  const std::string long_one = complaint("<a>" + std::string(60, 'x') + "</a>");
+TEST(XmlTree, KeepsTheFirstTextBetweenElements) {
+  const XmlElement root = parseXml("<a>\n  <b>1 2 3<c/>4</b></a>", "robot.xml");
+  EXPECT_EQ(root.text, "");
+  EXPECT_EQ(root.children[0].text, "1 2 3");
+}
+
+TEST(RobotGrammar, RefusesTextBetweenElements) {
+  const auto said = [](const std::string& text) {
+    return tests::errorOf([&] { refuseText(parseXml(text, "robot.xml")); });
+  };
+  EXPECT_NE(said("<b>1 2 3</b>").find("robot.xml:1: <b> holds the text \"1 2 3\""), std::string::npos);
+  const std::string long_one = said("<a>" + std::string(60, 'x') + "</a>");
   EXPECT_NE(long_one.find(printable(std::string(60, 'x'), 40)), std::string::npos) << long_one;
-  EXPECT_NE(complaint("<a>\x1b[2J</a>").find("\\x1b[2J"), std::string::npos) << "shown, not obeyed by a terminal";
+  EXPECT_NE(said("<a>\x1b[2J</a>").find("\\x1b[2J"), std::string::npos) << "shown, not obeyed by a terminal";
 }
 
 TEST(XmlTree, TakesAsManyLevelsAsItSaysAndNoMore) {
