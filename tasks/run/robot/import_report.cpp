@@ -80,7 +80,7 @@ std::string importText(const RobotImport& import) {
       counted(touchingGeoms(robot), "shape that touches", "shapes that touch"));
   if (!import.notes.all().empty()) text += "Without effect here:\n";
   for (const ImportNote& note : import.notes.all()) {
-    text += fmt::format("  {:<28} {:>4} x, first at {}{}{}\n", note.what, note.count, printable(note.place),
+    text += fmt::format("  {:<28} {:>4} x, first at {}{}{}\n", printable(note.what), note.count, printable(note.place),
                         note.why.empty() ? "" : ". ", note.why);
   }
   return text;

@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 
+#include "pincer/tasks/run/robot/import_report.h"
 #include "pincer/tasks/run/robot/mjcf.h"
 #include "pincer/tasks/run/robot/robot_pose.h"
 #include "pincer/tasks/run/robot/robot_scene.h"
@@ -275,6 +276,13 @@ TEST_F(UrdfReader, WhatHasNoEffectIsCountedByName) {
   for (const ImportNote& note : notes.all()) names.insert(note.what);
   EXPECT_EQ(names, (std::set<std::string>{"limit effort", "limit velocity", "safety_controller", "gazebo mu1",
                                           "gazebo mu2", "transmission type", "origin rpy above a turn"}));
+}
+
+// A terminal may obey bytes above 127, too: they begin commands in some.
+TEST_F(UrdfReader, NamesOfIgnoredPartsDontReachTheTerminalAsTheyAre) {
+  const std::string text = importText(read(link("base") + "<gazebo><a\x9b/></gazebo>"));
+  EXPECT_NE(text.find("gazebo a"), std::string::npos) << text;
+  EXPECT_EQ(text.find('\x9b'), std::string::npos) << text;
 }
 
 // The schema that ROS publishes (urdf.xsd of urdfdom): elements, the elements that they hold, and their attributes.
