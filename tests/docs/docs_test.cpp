@@ -88,6 +88,7 @@ void furnish(const fs::path& folder) {
   for (const char* part : {"tasks", "docs"}) fs::create_symlink(kSource / part, folder / part);
   fs::copy_file(kSource / "tasks/scenes/files/star_knob.obj", folder / "part.obj");
   fs::copy_file(kSource / "tasks/scenes/files/gripper.xml", folder / "robot.xml");
+  fs::copy_file(kSource / "tasks/scenes/files/arm.urdf", folder / "robot.urdf");
   const std::string scan =
       fmt::format("cd '{}' && build/pincer mesh convert part.obj scan.stl --units mm > furnish.log", folder.string());
   ASSERT_EQ(std::system(scan.c_str()), 0) << readFile(folder / "furnish.log");
