@@ -15,7 +15,10 @@ bool isUrdf(const std::string& path) {
 
 }  // namespace
 
-bool isRobotFile(const std::string& path) { return isUrdf(path) || std::filesystem::path(path).extension() == ".xml"; }
+bool isRobotFile(const std::string& path) {
+  const std::filesystem::path ending = std::filesystem::path(path).extension();
+  return isUrdf(path) || ending == ".xml" || ending == ".mjcf";
+}
 
 RobotImport readRobotFile(const std::string& path, const std::vector<std::string>& allowed_folders) {
   return isUrdf(path) ? readUrdf(path, allowed_folders) : readMjcf(path, allowed_folders);
