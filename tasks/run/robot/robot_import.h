@@ -13,7 +13,8 @@ struct RobotImport {
   ImportNotes notes;
 };
 
-// True for the files that robots come in: .xml and .mjcf (MJCF), .urdf; and .xacro, whose refusal says how it becomes URDF.
+// True for the files that robots come in: .xml and .mjcf (MJCF), .urdf; and .xacro, whose refusal says how it becomes
+// URDF.
 bool isRobotFile(const std::string& path);
 
 // By the file's ending: readUrdf for .urdf and .xacro, else readMjcf. Throws InputError.
