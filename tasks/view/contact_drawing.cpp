@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace pincer::tasks {
 namespace {
 
 // Colours: red, green, blue, 0 to 1; chosen by eye.
 const Vec3f kStick(0.02f, 0.50f, 0.20f), kSlip(0.95f, 0.10f, 0.03f), kNormal(0.02f, 0.07f, 0.30f);
-constexpr double kLeastForce = 1e-3;  // smaller ones get no arrow [N]
-constexpr int kMostLabels = 8;        // more contacts than these, and only fingers' forces are written beside them
-constexpr double kThin = 0.012;       // of lines, in sizes of marks
+constexpr double kLeastForce = 1e-3;    // smaller ones get no arrow [N]
+constexpr double kLeastWritten = 0.01;  // smaller ones aren't written beside their arrow: they would read 0.00 [N]
+constexpr std::size_t kMostLabels = 8;  // more of them, and only fingers' and the selected body's forces are written
+constexpr double kThin = 0.012;         // of lines, in sizes of marks
 
 const Vec3f& gripColour(bool sliding) { return sliding ? kSlip : kStick; }
 
@@ -28,6 +30,49 @@ std::vector<const ContactSnapshot*> contactsOfFinger(const Snapshot& snapshot, i
     if (contact.finger == finger && (body < 0 || contact.body == body)) contacts.push_back(&contact);
   }
   return contacts;
+}
+
+using ContactGroup = std::vector<const ContactSnapshot*>;
+
+bool touches(const ContactSnapshot& contact, int body) {
+  return body >= 0 && (contact.body == body || contact.other_body == body);
+}
+
+// Contacts whose force is written as one: all of the same two things; each by itself where the selected body has it.
+std::vector<ContactGroup> contactGroups(const Snapshot& snapshot, int selected) {
+  std::vector<ContactGroup> groups;
+  for (int i = 0; i < snapshot.contact_count; ++i) {
+    const ContactSnapshot& contact = snapshot.contacts[static_cast<std::size_t>(i)];
+    const auto of_same = [&](const ContactGroup& group) {
+      const ContactSnapshot& other = *group.front();
+      return other.finger == contact.finger && other.body == contact.body && other.other_body == contact.other_body;
+    };
+    const auto found = touches(contact, selected) ? groups.end() : std::find_if(groups.begin(), groups.end(), of_same);
+    found == groups.end() ? groups.push_back({&contact}) : found->push_back(&contact);
+  }
+  return groups;
+}
+
+// Beyond the arrows' middle end: the mean of their ends, each by its force.
+std::optional<ViewLabel> labelOf(const ContactGroup& group, const Snapshot& snapshot, const ContactLook& look) {
+  Vec3 sum_W = Vec3::Zero(), ends_W = Vec3::Zero();
+  double newtons = 0;
+  bool slips = false;
+  for (const ContactSnapshot* contact : group) {
+    const double force = contact->f_W.norm();
+    sum_W += contact->f_W;
+    ends_W += force * contact->p_W + (look.metres_per_newton * force + 0.12 * look.marks.size) * contact->f_W;
+    newtons += force;
+    slips |= contact->sliding;
+  }
+  if (sum_W.norm() < kLeastWritten) return {};
+  std::string text = fmt::format("{:.2f} N", sum_W.norm());
+  const double share = shareOfFinger(snapshot, *group.front());
+  if (group.size() > 1)
+    text += fmt::format(", {} places", group.size());
+  else if (share < 1)
+    text += fmt::format(", {:.0f} %", 100 * share);
+  return ViewLabel{ends_W / newtons, text, slips};
 }
 
 void addPlace(const Snapshot& snapshot, const ContactSnapshot& contact, const ContactLook& look, double size,
@@ -128,16 +173,14 @@ void addContacts(const Snapshot& snapshot, const ViewChoice& choice, const Conta
   }
 }
 
-std::vector<ViewLabel> contactLabels(const Snapshot& snapshot, const ContactLook& look) {
+std::vector<ViewLabel> contactLabels(const Snapshot& snapshot, const ContactLook& look, int selected) {
+  const std::vector<ContactGroup> groups = contactGroups(snapshot, selected);
+  const bool only_fingers = groups.size() > kMostLabels;
   std::vector<ViewLabel> labels;
-  for (int i = 0; i < snapshot.contact_count; ++i) {
-    const ContactSnapshot& contact = snapshot.contacts[static_cast<std::size_t>(i)];
-    const double newtons = contact.f_W.norm(), share = shareOfFinger(snapshot, contact);
-    if (newtons < 0.01 || (contact.finger < 0 && snapshot.contact_count > kMostLabels)) continue;
-    std::string text = fmt::format("{:.2f} N", newtons);
-    if (share < 1) text += fmt::format(", {:.0f} %", 100 * share);
-    labels.push_back({contact.p_W + (look.metres_per_newton + 0.12 * look.marks.size / newtons) * contact.f_W, text,
-                      contact.sliding});
+  for (const ContactGroup& group : groups) {
+    const ContactSnapshot& first = *group.front();
+    if (only_fingers && first.finger < 0 && !touches(first, selected)) continue;
+    if (auto label = labelOf(group, snapshot, look)) labels.push_back(std::move(*label));
   }
   return labels;
 }

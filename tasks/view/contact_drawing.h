@@ -18,8 +18,9 @@ struct ContactLook {
 
 void addContacts(const Snapshot& snapshot, const ViewChoice& choice, const ContactLook& look, DrawList& list);
 
-// Newtons beside the arrows, and beside those of a tip with several contacts the share of its force.
-std::vector<ViewLabel> contactLabels(const Snapshot& snapshot, const ContactLook& look);
+// Newtons beside the arrows. Forces between the same two things are written as their sum; those of the body `selected`
+// (-1: none) one by one, of a tip with several contacts with the share of its force.
+std::vector<ViewLabel> contactLabels(const Snapshot& snapshot, const ContactLook& look, int selected = -1);
 
 // Of the normal force of the contact's finger: 1 for its only contact, and for one of two bodies.
 double shareOfFinger(const Snapshot& snapshot, const ContactSnapshot& contact);

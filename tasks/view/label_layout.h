@@ -1,4 +1,4 @@
-// label_layout: places for labels so that none lies over another.
+// label_layout: places for labels so that none lies over another, nor over the things that they tell of.
 #pragma once
 #include <vector>
 
@@ -12,8 +12,10 @@ struct LabelBox {
 };
 
 // The middle of each label [pixels]: over its anchor, or at the nearest of the tried places around it where it lies
-// inside a picture of this size and over none that came before; over its anchor if there is none. The order of the
-// labels decides, so a picture of the same labels is the same.
-std::vector<Vec2> layOut(const std::vector<LabelBox>& labels, const Vec2& picture);
+// inside a picture of this size, over none that came before and over no thing; beside the others only where things
+// leave no room; over its anchor if there is none at all. The order of the labels decides, so a picture of the same
+// labels is the same.
+std::vector<Vec2> layOut(const std::vector<LabelBox>& labels, const std::vector<Eigen::AlignedBox2d>& things,
+                         const Vec2& picture);
 
 }  // namespace pincer::tasks

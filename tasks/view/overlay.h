@@ -34,7 +34,8 @@ struct OverlayText {
   const Snapshot* snapshot = nullptr;
   ViewChoice choice;
   std::vector<OverlayLabel> labels;
-  std::vector<PadLook> pads;  // one per finger
+  std::vector<Eigen::AlignedBox2d> things;  // that labels keep off [pixels, y down]
+  std::vector<PadLook> pads;                // one per finger
   std::vector<const StripChart*> charts;
   std::string title;                // of scene or task
   const StudyPage* page = nullptr;  // that covers everything else; null: none

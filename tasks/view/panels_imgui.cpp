@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "pincer/contact/io/counted.h"
 #include "pincer/tasks/view/label_layout.h"
 #include "pincer/tasks/view/overlay_parts.h"
 
@@ -52,7 +53,7 @@ void drawLabels(const OverlayText& text, int width, int height) {
     const ImVec2 size = ImGui::CalcTextSize(label.text.c_str());
     boxes.push_back({label.pixel, Vec2(size.x + 10, size.y + 4)});
   }
-  const std::vector<Vec2> places = layOut(boxes, Vec2(width, height));
+  const std::vector<Vec2> places = layOut(boxes, text.things, Vec2(width, height));
   ImDrawList* list = ImGui::GetBackgroundDrawList();
   const auto pixel = [](const Vec2& v) { return ImVec2(static_cast<float>(v.x()), static_cast<float>(v.y())); };
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -81,7 +82,7 @@ void drawStatus(const OverlayText& text) {
   ImGui::SameLine();
   dimLine(fmt::format("{}", text.pace));
   if (s.tick_seconds > 0 && !s.trial.blind)
-    dimLine(fmt::format("tick {:.1f} us, {} contacts", 1e6 * s.tick_seconds, s.contact_count));
+    dimLine(fmt::format("tick {:.1f} us, {}", 1e6 * s.tick_seconds, counted(s.contact_count, "contact")));
   const std::string words = statusWords(s);
   if (!text.moment.empty()) dimLine(text.moment);
   if (!words.empty()) colourLine((s.status & ~std::uint32_t{0}) == 0, words);

@@ -284,7 +284,24 @@ double SceneDrawing::metresPerNewton(const Snapshot& snapshot) const {
 
 std::vector<ViewLabel> SceneDrawing::labels(const Snapshot& snapshot, const ViewChoice& choice) const {
   if (!choice.forces || snapshot.trial.blind) return {};
-  return contactLabels(snapshot, contactLook(snapshot));
+  return contactLabels(snapshot, contactLook(snapshot), choice.selected);
+}
+
+std::vector<Eigen::AlignedBox2d> SceneDrawing::outlines(const Snapshot& snapshot, const Camera& camera, int width,
+                                                        int height) const {
+  std::vector<Eigen::AlignedBox2d> boxes;
+  if (snapshot.trial.blind) return boxes;
+  for (const ShapeLook& look : shapes_) {
+    if (!bodies_[look.body].matters) continue;
+    Eigen::AlignedBox2d box;
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 p_S = look.box_S.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+      if (const auto pixel = camera.toPixel(snapshot.X_WB[look.body] * (look.X_BS * p_S), width, height))
+        box.extend(*pixel);
+    }
+    if (!box.isEmpty()) boxes.push_back(box);
+  }
+  return boxes;
 }
 
 Vec3 SceneDrawing::centre_W(const Snapshot& snapshot) const {

@@ -53,6 +53,9 @@ class SceneDrawing {
   static int thingOfBody(std::size_t body) { return static_cast<int>(body) + 1; }
   DrawList compose(const Snapshot& snapshot, const ViewChoice& choice) const;
   std::vector<ViewLabel> labels(const Snapshot& snapshot, const ViewChoice& choice) const;
+  // About each shape of a body that is to be in the picture [pixels, y down].
+  std::vector<Eigen::AlignedBox2d> outlines(const Snapshot& snapshot, const Camera& camera, int width,
+                                            int height) const;
 
   // A ball about all that moves, in this snapshot.
   Vec3 centre_W(const Snapshot& snapshot) const;

@@ -204,6 +204,8 @@ OverlayText Viewer::overlayText() const {
     if (const auto pixel = painter_.camera().toPixel(label.p_W, size.width, size.height))
       text.labels.push_back({*pixel, label.text, label.slips});
   }
+  if (!text.labels.empty())
+    text.things = painter_.scene().outlines(shown(), painter_.camera(), size.width, size.height);
   for (std::size_t i = 0; i < pads_.size(); ++i) {
     if (shown().fingers[i].q_WF) text.pads.push_back(pads_[i]);
     if (hand_ && pads_.size() > 1 && !text.pads.empty()) text.pads.back().grip = hand_->grip();

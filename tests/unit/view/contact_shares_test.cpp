@@ -48,7 +48,13 @@ TEST(ContactDrawing, AFlatJawHasSeveralPlacesWhoseSharesAreTheWhole) {
     EXPECT_GE(places[i], 3);
     EXPECT_NEAR(shares[i], 1, 1e-12);
   }
+  // Eight labels covered the gripper: a jaw's force is written once, and one by one of the body that is selected.
+  EXPECT_EQ(contactLabels(snapshot, look).size(), shares.size());
   for (const ViewLabel& label : contactLabels(snapshot, look))
+    EXPECT_NE(label.text.find(" N, 4 places"), std::string::npos) << label.text;
+  const int selected = snapshot.contacts[0].body;
+  EXPECT_EQ(contactLabels(snapshot, look, selected).size(), static_cast<std::size_t>(snapshot.contact_count));
+  for (const ViewLabel& label : contactLabels(snapshot, look, selected))
     EXPECT_NE(label.text.find(" %"), std::string::npos) << label.text;
 }
 

@@ -26,7 +26,7 @@ RC_GTEST_PROP(LabelLayout, NoLabelLiesOverAnotherNorOutside, ()) {
     const Vec2 anchor(640 + *rc::gen::inRange(-spread, spread + 1), 360 + *rc::gen::inRange(-spread, spread + 1));
     labels.push_back({anchor, Vec2(*rc::gen::inRange(40, 90), 20)});
   }
-  const std::vector<Vec2> places = layOut(labels, picture);
+  const std::vector<Vec2> places = layOut(labels, {}, picture);
   RC_ASSERT(places.size() == count);
   for (std::size_t i = 0; i < count; ++i) {
     RC_ASSERT((places[i] - 0.5 * labels[i].size).minCoeff() >= 0);
@@ -37,9 +37,20 @@ RC_GTEST_PROP(LabelLayout, NoLabelLiesOverAnotherNorOutside, ()) {
 
 TEST(LabelLayout, LeavesLabelsThatAreFreeWhereTheyBelong) {
   const std::vector<LabelBox> labels = {{Vec2(100, 100), Vec2(50, 20)}, {Vec2(300, 100), Vec2(50, 20)}};
-  const std::vector<Vec2> places = layOut(labels, Vec2(640, 360));
+  const std::vector<Vec2> places = layOut(labels, {}, Vec2(640, 360));
   EXPECT_EQ(places[0], labels[0].anchor);
   EXPECT_EQ(places[1], labels[1].anchor);
+}
+
+// Forces inside a small gripper were written over it.
+TEST(LabelLayout, KeepsOffTheThingWhereThereIsRoom) {
+  const Eigen::AlignedBox2d gripper(Vec2(560, 300), Vec2(720, 420));
+  const std::vector<LabelBox> labels = {{Vec2(600, 340), Vec2(60, 20)}, {Vec2(680, 340), Vec2(60, 20)}};
+  for (const Vec2& place : layOut(labels, {gripper}, Vec2(1280, 720)))
+    EXPECT_FALSE(overlap(place, labels[0].size, gripper.center(), gripper.sizes())) << place.transpose();
+  // A thing that fills the picture leaves no room: labels avoid each other alone.
+  const Eigen::AlignedBox2d wall(Vec2(0, 0), Vec2(1280, 720));
+  EXPECT_EQ(layOut(labels, {wall}, Vec2(1280, 720))[0], labels[0].anchor);
 }
 
 Snapshot at(double time, bool touching, bool sliding) {
