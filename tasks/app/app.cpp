@@ -66,9 +66,17 @@ int flushed(int exit_code) {
   return exit_code == kExitOk ? kExitBadInput : exit_code;
 }
 
+// "pincer mesh info": as far as the command line named commands.
+std::string commandOf(const CLI::App& app) {
+  std::string words = app.get_name();
+  for (std::vector<CLI::App*> named = app.get_subcommands(); !named.empty(); named = named.front()->get_subcommands())
+    words += " " + named.front()->get_name();
+  return words;
+}
+
 int reportUsage(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return flushed(app.exit(error));  // --help, --version
-  complain(fmt::format("{}. See `pincer --help`.", printableMessage(error.what())));
+  complain(fmt::format("{}. See `{} --help`.", printableMessage(error.what()), commandOf(app)));
   return kExitUsage;
 }
 

@@ -41,7 +41,7 @@ TEST(CommandLine, AFlagTakesNoNumberThatNoTypeHolds) {
   for (const char* flag : {"--json=99999999999999999999", "--no-report=18446744073709551616", "--json=2"}) {
     const Spawned ended = spawnPincer({"run", "sphere-pickup", flag});
     EXPECT_EQ(ended.exit_code, kExitUsage) << flag;
-    EXPECT_NE(ended.error.find("See `pincer --help`"), std::string::npos) << ended.error;
+    EXPECT_NE(ended.error.find("See `pincer run sphere-pickup --help`"), std::string::npos) << ended.error;
   }
 }
 
