@@ -53,6 +53,22 @@ def test_a_session_is_read(session, program, tmp_path):
         pincer.read_session(tmp_path / "none.db")
 
 
+def test_a_session_counts_and_describes_as_its_export_does(session, program, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    subprocess.run([program, "export", str(session), "--out", str(tmp_path)], stdout=subprocess.DEVNULL, check=True)
+    read = pincer.read_session(session)
+    for name, table in (("trial", "trials"), ("event", "events"), ("reading", "readings")):
+        exported = pandas.read_csv(tmp_path / f"{name}.csv")
+        for column in ("trial", "participant"):
+            if column in exported:
+                assert list(exported[column]) == list(read.frame(table)[column]), f"{name}.{column}"
+    assert read.trials["trial"][0] == 1 and read.trials["participant"][0] == 1
+    columns = pandas.read_csv(tmp_path / "columns.csv", keep_default_na=False)
+    assert columns.equals(read.frame("columns")[list(columns.columns)].astype(str))
+    levels = columns[(columns.table == "trial") & (columns.column == "condition")].levels.item()
+    assert levels.startswith("cld+force: ") and ";" not in levels  # the session has this condition alone
+
+
 def test_a_session_is_a_data_frame(session):
     pandas = pytest.importorskip("pandas")
     frame = pincer.read_session(session).frame("samples")

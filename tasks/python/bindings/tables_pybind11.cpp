@@ -7,6 +7,7 @@
 #include "pincer/tasks/python/bindings/bindings.h"
 #include "pincer/tasks/python/bindings/views_pybind11.h"
 #include "pincer/tasks/run/scene/builtin_scenes.h"
+#include "pincer/tasks/run/session/column_meanings.h"
 #include "pincer/tasks/run/session/columns.h"
 #include "pincer/tasks/run/session_store.h"
 
@@ -21,7 +22,10 @@ class Columns {
     std::size_t column = 0;
     tasks::forEachColumn(record, [&]<class Field>(const tasks::ColumnName& name, const Field& field) {
       if (rows_ == 0) start<Field>(name);
-      put(columns_[column++], field);
+      if constexpr (std::is_same_v<Field, std::int64_t>)
+        put(columns_[column++], field + tasks::countsFrom(name));  // as in exports: people count from 1
+      else
+        put(columns_[column++], field);
     });
     ++rows_;
   }
@@ -82,6 +86,25 @@ py::dict tableOf(const std::vector<Record>& records) {
   return columns.take();
 }
 
+// As columns.csv has them.
+py::dict describedColumns(const tasks::SessionInfo& info) {
+  py::list table, column, unit, description, levels;
+  for (const tasks::DescribedColumn& c : tasks::allColumns(tasks::conditionLabels(info))) {
+    table.append(c.table);
+    column.append(c.column);
+    unit.append(c.meaning.unit);
+    description.append(c.meaning.description);
+    levels.append(tasks::levelText(c.meaning));
+  }
+  py::dict columns;
+  columns["table"] = table;
+  columns["column"] = column;
+  columns["unit"] = unit;
+  columns["description"] = description;
+  columns["levels"] = levels;
+  return columns;
+}
+
 py::dict readSession(const std::string& path, std::int64_t stride) {
   if (stride < 1) throw InputError(fmt::format("read_session: stride = {} is out of range [1, inf).", stride));
   const tasks::SessionReader session(path);
@@ -91,9 +114,11 @@ py::dict readSession(const std::string& path, std::int64_t stride) {
   tables["responses"] = tableOf(session.responses());
   tables["events"] = tableOf(session.events());
   tables["readings"] = tableOf(session.readings());
+  tables["survey"] = tableOf(session.survey());
   Columns<tasks::SampleRecord> samples;
   session.forEachSample({{}, stride}, [&](const tasks::SampleRecord& sample) { samples.add(sample); });
   tables["samples"] = samples.take();
+  tables["columns"] = describedColumns(session.info());
   tables["state"] = session.state();
   tables["warning"] = session.warning();
   return tables;

@@ -215,6 +215,8 @@ class Session:
     events: np.ndarray
     readings: np.ndarray
     samples: np.ndarray
+    survey: np.ndarray
+    columns: np.ndarray
     state: str
     warning: str
     def frame(self, name: str = "trials") -> Any: ...

@@ -32,15 +32,18 @@ class Session:
     """What a session keeps (docs/experiments.md): structured arrays, SI units, times on the session's clock.
 
     trials, responses, events, readings, samples: one row per trial, answer, event, reading, kept tick
+    survey: one row per question that a person was asked
+    columns: one row per column of a session's tables: table, column, unit, description, levels
+    Trials, participants, runs and places in an order count from 1, as in `pincer export`.
     info: one row: task, seed, version, commit, compiler, flags, ...; state: "complete", "running", "aborted: ..."
     warning: sentences if the session isn't whole; else empty
     """
 
-    __slots__ = ("path", "info", "trials", "responses", "events", "readings", "samples", "state", "warning")
+    __slots__ = ("path", "info", "trials", "responses", "events", "readings", "samples", "survey", "columns", "state", "warning")
 
     def __init__(self, path, tables):
         self.path = path
-        for name in ("info", "trials", "responses", "events", "readings", "samples"):
+        for name in ("info", "trials", "responses", "events", "readings", "samples", "survey", "columns"):
             setattr(self, name, _structured(tables[name]))
         self.state, self.warning = tables["state"], tables["warning"]
 
