@@ -83,8 +83,12 @@ EquationForm chooseForm(const ContactProblem& problem, SolverScratch& scratch) {
   scratch.lu.begin(nodes);
   for (int i = 0; i < n; ++i) {
     const std::span<const ContactSide> sides = problem.sidesOf(i);
-    const int a = nodeOf(scratch, sides[0]), b = nodeOf(scratch, sides[1]);
-    if (a >= 0 && b >= 0) scratch.lu.connect(a, b);
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      for (std::size_t l = k + 1; l < sides.size(); ++l) {
+        const int a = nodeOf(scratch, sides[k]), b = nodeOf(scratch, sides[l]);
+        if (a >= 0 && b >= 0) scratch.lu.connect(a, b);
+      }
+    }
   }
   if (scratch.lu.order(kMostProducts)) return EquationForm::kMovers;
   return n <= scratch.dense_contacts ? EquationForm::kContacts : EquationForm::kTooLarge;
@@ -102,7 +106,7 @@ ContactEquations::ContactEquations(const ScaledProblem& problem, EquationForm fo
     ContactTerms& t = terms_[i];
     clearBlock(t.R, problem.rows(i));
     t.has_R = false;
-    for (const ContactSide& side : problem.sides[static_cast<std::size_t>(i)]) {
+    for (const ContactSide& side : problem.sidesOf(i)) {
       if (side.mover < 0 || nodeOf(scratch, side) >= 0) continue;
       addCoupling(side, problem.rows(i), side, problem.rows(i), t.R, kStride);
       t.has_R = true;
@@ -249,7 +253,7 @@ void ContactEquations::addToMovers(int i) {
   const ContactTerms& t = terms_[i];
   const int rows = problem_.rows(i);
   const bool is_scalar = t.coupling == Coupling::kIdentity && !t.has_R;  // G is a multiple of the identity
-  for (const ContactSide& b : problem_.sides[static_cast<std::size_t>(i)]) {
+  for (const ContactSide& b : problem_.sidesOf(i)) {
     const int column = nodeOf(scratch_, b);
     if (column < 0) continue;
     double GA[kStride][kMoverFreedoms];
@@ -262,7 +266,7 @@ void ContactEquations::addToMovers(int i) {
         }
       }
     });
-    for (const ContactSide& a : problem_.sides[static_cast<std::size_t>(i)]) {
+    for (const ContactSide& a : problem_.sidesOf(i)) {
       const int row = nodeOf(scratch_, a);
       if (row < 0) continue;
       double* const H = scratch_.lu.block(scratch_.lu.place(row, column));
@@ -294,7 +298,7 @@ bool ContactEquations::factoriseMovers() {
 void ContactEquations::solveMovers(double* x) {
   double* const y = scratch_.rhs.data();
   const auto forNodes = [&](int i, const auto& act) {
-    for (const ContactSide& side : problem_.sides[static_cast<std::size_t>(i)]) {
+    for (const ContactSide& side : problem_.sidesOf(i)) {
       const int node = nodeOf(scratch_, side);
       if (node >= 0) act(side, y + kMoverFreedoms * node);
     }

@@ -60,6 +60,15 @@ struct alignas(64) RoundContact {
   bool isRound() const { return inverse_W_tt > 0; }
 };
 
+// Contact's among `sides`: two each, or those from first_side[contact] on.
+inline std::span<const ContactSide> sidesAt(std::span<const ContactSide> sides, std::span<const int> first_side,
+                                            int contact) {
+  const auto i = static_cast<std::size_t>(contact);
+  if (first_side.empty()) return sides.subspan(2 * i, 2);
+  return sides.subspan(static_cast<std::size_t>(first_side[i]),
+                       static_cast<std::size_t>(first_side[i + 1] - first_side[i]));
+}
+
 // Views onto memory that somebody else owns (engine/world's scratch). n contacts, m rows in all.
 struct ContactProblem {
   std::span<const int> first_row;      // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1
@@ -78,12 +87,7 @@ struct ContactProblem {
   int rows(int contact) const { return firstRow(contact + 1) - firstRow(contact); }
   double friction(int contact) const { return mu[static_cast<std::size_t>(contact)]; }
   // Of any number of movers, no two of them the same; those with mover -1 don't count.
-  std::span<const ContactSide> sidesOf(int contact) const {
-    const auto i = static_cast<std::size_t>(contact);
-    if (first_side.empty()) return sides.subspan(2 * i, 2);
-    return sides.subspan(static_cast<std::size_t>(first_side[i]),
-                         static_cast<std::size_t>(first_side[i + 1] - first_side[i]));
-  }
+  std::span<const ContactSide> sidesOf(int contact) const { return sidesAt(sides, first_side, contact); }
 };
 
 }  // namespace pincer::engine

@@ -65,17 +65,15 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   PINCER_ASSERT(problem.first_row.size() == problem.mu.size() + 1);
   PINCER_ASSERT(problem.firstRow(problem.contactCount()) == problem.rowCount());
   projectOntoCones(problem, r);
-  if (!problem.first_side.empty()) {  // the forms for few contacts know two movers each
-    result = searchImpulses(problem, options, scratch, r, u);
-    return settleEnergy(problem, scratch, r, u, result);
-  }
   const bool is_solved = solveSmallProblem(problem, options, r, u, result);
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
   const bool is_few = problem.contactCount() <= kFewContacts;
+  // a heavy trunk that lands on several of its legs at once: Newton's method for few contacts finds no way
+  const bool may_search = problem.contactCount() >= kManyContacts || !problem.first_side.empty();
   if (is_few) solveFew(problem, options, scratch, r, u, result);
-  if (!is_few || (!result.converged && !result.yields && problem.contactCount() >= kManyContacts && options.thorough &&
-                  scratch.operations_left >= 0))
+  if (!is_few ||
+      (!result.converged && !result.yields && may_search && options.thorough && scratch.operations_left >= 0))
     result = searchImpulses(problem, options, scratch, r, u);
   settleEnergy(problem, scratch, r, u, result);
 }

@@ -4,6 +4,7 @@
 //   r_c moves to r until |e (r - r_c)| is small enough
 //
 //   look at the warm start; good enough? done
+//   all below: however many movers a contact has, as links of long arms do
 //   up to three contacts of one to three movers   Newton's method, with all sizes known
 //                                                 to the compiler (small_problem.h)
 //   up to kFewContacts, all stick or are open      stuck_contacts.h, in one step

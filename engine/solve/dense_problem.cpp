@@ -109,6 +109,7 @@ DenseAnswer solveDense(const DenseProblem& problem, const SolverOptions& options
   if (contacts == 0) return answer;
   SolverScratch scratch(SolverSize{.contacts = contacts,
                                    .movers = movers,
+                                   .movers_per_contact = factored.most_sides,
                                    .places = contacts * factored.most_sides * factored.most_sides,
                                    .blocks = movers * movers,
                                    .products = movers * movers * movers});

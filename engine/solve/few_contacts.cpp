@@ -123,12 +123,12 @@ class FewSearch {
  private:
   // Passes over all contacts, of the scaled problem.
   void smooth() {
-    const auto n = static_cast<std::size_t>(problem_.contactCount());
-    const ContactProblem scaled{problem_.first_row,
-                                problem_.mu,
-                                {problem_.sides.front().data(), 2 * n},
-                                VectorMap(scratch_.q.data(), problem_.rowCount()),
-                                problem_.movers};
+    const ContactProblem scaled{.first_row = problem_.first_row,
+                                .mu = problem_.mu,
+                                .sides = problem_.sides,
+                                .q = VectorMap(scratch_.q.data(), problem_.rowCount()),
+                                .movers = problem_.movers,
+                                .first_side = problem_.first_side};
     respond(scaled, current_.r, scratch_);
     Sweeps sweeps(scaled, scratch_, current_.r);
     for (int k = 0; k < kSweepsPerRound; ++k) sweeps.sweep(false);

@@ -1,13 +1,14 @@
 #include "pincer/engine/solve/scaled_problem.h"
 
+#include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/mobility.h"
 #include "pincer/engine/solve/residual.h"
 
 namespace pincer::engine {
 namespace {
 
-void scaleContact(std::span<const ContactSide> from, int rows, double factor, ContactSides& to) {
-  for (std::size_t s = 0; s < 2; ++s) {
+void scaleContact(std::span<const ContactSide> from, int rows, double factor, ContactSide* to) {
+  for (std::size_t s = 0; s < from.size(); ++s) {
     to[s].mover = from[s].mover;
     if (from[s].mover < 0) continue;
     withRows(rows, [&](auto count) {
@@ -64,13 +65,14 @@ ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScra
   }
   ScaledProblem scaled{problem.first_row,
                        problem.mu,
-                       {scratch.sides.data(), static_cast<std::size_t>(n)},
+                       {scratch.sides.data(), problem.sides.size()},
                        nullptr,
                        scratch.q.data(),
                        scratch.scale.data(),
                        scratch.y.data(),
                        referenceSpeed(problem),
-                       problem.movers};
+                       problem.movers,
+                       problem.first_side};
   if (!dense) {
     scaleSides(problem, scratch);
     return scaled;
@@ -83,8 +85,12 @@ ScaledProblem scaleProblem(const ContactProblem& problem, bool dense, SolverScra
 }
 
 void scaleSides(const ContactProblem& problem, SolverScratch& scratch) {
-  for (int i = 0; i < problem.contactCount(); ++i)
-    scaleContact(problem.sidesOf(i), problem.rows(i), 1 / scratch.scale[i], scratch.sides[i]);
+  PINCER_ASSERT(problem.sides.size() <= scratch.sides.size());
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const std::span<const ContactSide> from = problem.sidesOf(i);
+    scaleContact(from, problem.rows(i), 1 / scratch.scale[i],
+                 scratch.sides.data() + (from.data() - problem.sides.data()));
+  }
 }
 
 void multiply(const ScaledProblem& problem, const double* r, double* out) {
@@ -93,10 +99,10 @@ void multiply(const ScaledProblem& problem, const double* r, double* out) {
   for (int row = 0; row < m; ++row) out[row] = 0;
   std::fill(problem.y, problem.y + kMoverFreedoms * problem.movers, 0.0);
   for (int i = 0; i < problem.contactCount(); ++i) {
-    addImpulse(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), r + problem.firstRow(i), problem.y);
+    addImpulse(problem.sidesOf(i), problem.rows(i), r + problem.firstRow(i), problem.y);
   }
   for (int i = 0; i < problem.contactCount(); ++i) {
-    addVelocity(problem.sides[static_cast<std::size_t>(i)], problem.rows(i), problem.y, out + problem.firstRow(i));
+    addVelocity(problem.sidesOf(i), problem.rows(i), problem.y, out + problem.firstRow(i));
   }
 }
 

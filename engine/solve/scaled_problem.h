@@ -15,7 +15,7 @@ namespace pincer::engine {
 struct ScaledProblem {
   std::span<const int> first_row;
   std::span<const double> mu;
-  std::span<const ContactSides> sides;  // A^ [-]; with W^, only once scaleSides has been called
+  std::span<const ContactSide> sides;  // A^ [-], as the problem's; with W^, only once scaleSides has been called
   // W^, m x m [-]; null where the problem is better treated mover by mover (contact_equations.h)
   const double* W = nullptr;
   const double* q = nullptr;      // [sqrt(J)]
@@ -23,12 +23,14 @@ struct ScaledProblem {
   double* y = nullptr;            // working memory, kMoverFreedoms per mover
   double speed = 1;               // what residuals are relative to [m/s], see contactResidual
   int movers = 0;
+  std::span<const int> first_side = {};  // the problem's
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return first_row.back(); }
   int firstRow(int contact) const { return first_row[static_cast<std::size_t>(contact)]; }
   int rows(int contact) const { return firstRow(contact + 1) - firstRow(contact); }
   double friction(int contact) const { return mu[static_cast<std::size_t>(contact)]; }
+  std::span<const ContactSide> sidesOf(int contact) const { return sidesAt(sides, first_side, contact); }
 };
 
 // Scales `problem`, its contacts weighed (residual.h), into `scratch`; W^ as well if `dense`. Where some w_i isn't

@@ -12,7 +12,7 @@ namespace {
 constexpr int kBlocksPerMover = 64;     // of the factors: walls of forty bricks by twenty
 constexpr int kProductsAtLeast = 4096;  // for few contacts of many movers
 
-void sizeForFew(int contacts, int movers, SolverScratch& s) {
+void sizeForFew(int contacts, int movers, int movers_per_contact, SolverScratch& s) {
   const auto n = static_cast<std::size_t>(contacts);
   const std::size_t m = kMaxContactRows * n;
   s.max_contacts = contacts;
@@ -25,7 +25,7 @@ void sizeForFew(int contacts, int movers, SolverScratch& s) {
   s.workspace.resize(kInteriorPointVectors * m);
   s.pivots.resize(m);
   s.node.resize(static_cast<std::size_t>(movers));
-  s.sides.resize(n);
+  s.sides.resize(n * static_cast<std::size_t>(movers_per_contact));
   s.terms.resize(n);
   for (std::vector<double>* per_contact : {&s.scale, &s.shift}) per_contact->resize(n);
   s.active.resize(n);
@@ -36,6 +36,7 @@ void sizeForFew(int contacts, int movers, SolverScratch& s) {
 SolverSize solverSize(int contacts, int movers, int movers_per_contact) {
   return {.contacts = contacts,
           .movers = movers,
+          .movers_per_contact = movers_per_contact,
           .places = movers_per_contact * movers_per_contact * contacts,
           .blocks = kBlocksPerMover * std::min({movers, movers_per_contact * contacts, BlockLu::kMaxNodes}),
           .products = std::max(kProductsAtLeast, kProductsPerContact * contacts)};
@@ -50,7 +51,7 @@ SolverScratch::SolverScratch(const SolverSize& its) : lu(its.movers, its.blocks,
   local.resize(2 * (kMaxContactRows * m + n));
   round.resize(n);
   places.resize(static_cast<std::size_t>(its.places));
-  sizeForFew(std::min(its.contacts, kFewContacts), its.movers, *this);
+  sizeForFew(std::min(its.contacts, kFewContacts), its.movers, its.movers_per_contact, *this);
 }
 
 SolverScratch::SolverScratch(int contacts, int movers) : SolverScratch(solverSize(contacts, movers, 2)) {}

@@ -29,9 +29,10 @@ struct ContactTerms {
 
 // Sizes that memory has to be there for.
 struct SolverSize {
-  int contacts, movers;  // at most
-  int places;            // of blocks: the squared number of movers of each contact, summed
-  int blocks, products;  // of the movers' matrix: in its factors; in a factorisation, beyond which none is tried
+  int contacts, movers;    // at most
+  int movers_per_contact;  // likewise
+  int places;              // of blocks: the squared number of movers of each contact, summed
+  int blocks, products;    // of the movers' matrix: in its factors; in a factorisation, beyond which none is tried
 };
 
 // For contacts of at most so many movers each.
@@ -61,7 +62,7 @@ struct SolverScratch {
 
   // Of few_contacts.h: the scaled problem, linear equations, three iterates.
   int max_contacts = 0, dense_contacts = 0;
-  std::vector<ContactSides> sides;
+  std::vector<ContactSide> sides;  // of all contacts, as many as the problem's
   std::vector<double> W, q, scale, shift, jacobian, step, rhs, response, shift_centre, workspace;
   std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
   std::vector<int> active, pivots;                          // contacts in the dense equations; row swaps

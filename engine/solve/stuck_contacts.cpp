@@ -181,8 +181,8 @@ class StuckAnswer {
 bool hasFace(const ContactProblem& problem) {
   for (int i = 1; i < problem.contactCount(); ++i) {
     const std::span<const ContactSide> before = problem.sidesOf(i - 1), sides = problem.sidesOf(i);
-    bool is_same = true, is_point = false;
-    for (std::size_t k = 0; k < sides.size(); ++k) {
+    bool is_same = sides.size() == before.size(), is_point = false;
+    for (std::size_t k = 0; k < sides.size() && is_same; ++k) {
       is_same = is_same && sides[k].mover == before[k].mover;
       is_point = is_point || (sides[k].mover >= 0 && sides[k].is_point);
     }
@@ -197,7 +197,7 @@ bool solveStuckContacts(const ContactProblem& problem, const SolverOptions& opti
                         double* u, SolveResult& result) {
   PINCER_ASSERT(problem.contactCount() <= kFewContacts);
   StuckMovers movers;
-  if (!problem.first_side.empty() || !movers.count(problem)) return false;
+  if (!movers.count(problem)) return false;
   double* const r_start = scratch.impulses[0].data();
   std::copy(r, r + problem.rowCount(), r_start);
   StuckAnswer answer(problem, movers, options, scratch, r, u);

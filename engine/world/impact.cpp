@@ -194,15 +194,19 @@ void keepStruck(const WorldModel& model, WorldScratch& scratch) {
   std::erase_if(scratch.contacts, [&](const Contact& c) { return !isStruck(c.a) && !isStruck(c.b); });
 }
 
+// Of the first island's first contact.
+std::span<const ContactSide> sidesOfFirst(const IslandScratch& s) {
+  if (!s.islands.front().has_many_sides) return s.sides[0];
+  return {s.many_sides.data(), static_cast<std::size_t>(s.first_side[1])};
+}
+
 // A hit that nothing else hangs together with, nearly always the case, is solved to round-off. One that friction jams
 // has no answer: its bounded impulse stays (squeeze.h), round-off would make it 1e12 times as large.
 void sharpenSingleImpact(WorldScratch& scratch) {
-  if (!scratch.solve.converged || scratch.contacts.size() != 1 || scratch.islands.islands.empty() ||
-      scratch.islands.islands.front().has_many_sides)
-    return;
+  if (!scratch.solve.converged || scratch.contacts.size() != 1 || scratch.islands.islands.empty()) return;
   const int rows = scratch.first_row[1];
   double W[kMaxContactRows * kMaxContactRows] = {};
-  for (const ContactSide& side : scratch.islands.sides[0]) {
+  for (const ContactSide& side : sidesOfFirst(scratch.islands)) {
     if (side.mover < 0) continue;
     for (int k = 0; k < rows; ++k) {
       for (int l = 0; l < rows; ++l) {

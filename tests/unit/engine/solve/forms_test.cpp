@@ -110,6 +110,51 @@ TEST(EquationForms, DoNotDependOnTheOrderOfContactsAndBodies) {
   }
 }
 
+// The problem with each mover's six columns as two movers of three each, as long arms are cut into blocks.
+struct CutProblem {
+  std::vector<int> first_side{0};
+  std::vector<ContactSide> sides;
+
+  explicit CutProblem(const OwnedContactProblem& p) {
+    for (const ContactSides& whole : p.sides) {
+      for (const ContactSide& side : whole) {
+        for (int part = 0; side.mover >= 0 && part < 2; ++part) {
+          ContactSide& out =
+              sides.emplace_back(ContactSide{.mover = 2 * side.mover + part, .is_point = false, .A = {}});
+          for (int k = 0; k < kMaxContactRows; ++k)
+            std::copy(side.A[k] + 3 * part, side.A[k] + 3 * part + 3, out.A[k] + 3 * part);
+        }
+      }
+      first_side.push_back(static_cast<int>(sides.size()));
+    }
+  }
+  Solved solve(OwnedContactProblem& p) const {
+    ContactProblem view = p.view();
+    view.sides = sides;
+    view.first_side = first_side;
+    view.movers = 2 * p.movers;
+    SolverScratch scratch(solverSize(view.contactCount(), view.movers, 4));
+    Solved s{Eigen::VectorXd::Zero(view.rowCount()), Eigen::VectorXd::Zero(view.rowCount()), {}};
+    s.result = solveContacts(view, kExact, scratch, {s.r.data(), s.r.size()}, {s.u.data(), s.u.size()});
+    return s;
+  }
+};
+
+// W is the same, and so is the answer, by all forms: small, dense, mover by mover, swept.
+TEST(EquationForms, DoNotDependOnHowAMoverIsCutIntoBlocks) {
+  RandomScenes random(36);
+  for (int n = 0; n < 200; ++n) {
+    OwnedContactProblem p = n % 4 == 0   ? random.grasp(random.integer(1, 8), 1000, false)
+                            : n % 4 == 1 ? random.cluster(random.integer(2, 6), random.integer(4, 12), 1000, 1, false)
+                            : n % 4 == 2 ? random.stack(random.integer(1, 3), 1, 1e-4)
+                                         : random.ring(random.integer(2, 12), 1e-4);
+    const Solved whole = tests::solve(p, kExact), cut = CutProblem(p).solve(p);
+    EXPECT_EQ(cut.result.converged, whole.result.converged) << n;
+    if (!whole.result.converged) continue;
+    EXPECT_LE((cut.u - whole.u).cwiseAbs().maxCoeff(), 1e-10 + 1e-8 * p.q.cwiseAbs().maxCoeff()) << n;
+  }
+}
+
 // A stack of twenty is solved mover by mover: eighty contacts, a block-tridiagonal matrix.
 TEST(EquationForms, CarryATallStack) {
   RandomScenes random(34);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,18 +15,18 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr int kModelTicks = 1000;
-constexpr double kEvery = 0.2, kLast = 10;  // [s]: when targets change
+constexpr double kEvery = 0.2;  // [s]: when targets change
 
-// Each drive is told something new of its range five times a second, or up to one unit where it has none.
-void tellAtRandom(Scene& scene) {
-  tests::RandomNumbers random(1);
+// Each drive is told something new of its range five times a second until `last` [s], or up to one unit where it has
+// none.
+void tellAtRandom(double last, unsigned seed, Scene& scene) {
+  tests::RandomNumbers random(seed);
   for (SceneDrive& drive : scene.drives) {
     if (drive.model.gain == 0) continue;  // a spring
     const double lower = std::max(drive.model.lower_control, -1e3), upper = std::min(drive.model.upper_control, 1e3);
     const bool has_range = lower > -1e3 && upper < 1e3;
     std::vector<TimedPoint> told;
-    for (double time = 0; time <= kLast; time += kEvery) {
+    for (double time = 0; time < last + 0.5 * kEvery; time += kEvery) {
       const double value = random.uniform(has_range ? lower : -1, has_range ? upper : 1);
       told.push_back({time, {value, 0, 0}, Vec3::Zero()});
     }
@@ -36,24 +35,27 @@ void tellAtRandom(Scene& scene) {
   }
 }
 
-class RobotModels : public ::testing::TestWithParam<const char*> {};
-
-TEST_P(RobotModels, StaySolvedAndFiniteWhateverTheirDrivesAreTold) {
-  const std::string path = std::string(PINCER_SOURCE_DIR "/tests/robots/models/") + GetParam() + ".xml";
+Simulation toldAtRandom(const char* model, double last, unsigned seed) {
+  const std::string path = std::string(PINCER_SOURCE_DIR "/tests/robots/models/") + model + ".xml";
   RobotImport import = readMjcf(path);
   Scene scene = parseScene(sceneOfRobot(import.robot, {}, import.notes), path + ".json");
-  tellAtRandom(scene);
-  Simulation sim(std::move(scene));
-  int unsolved = 0;
-  for (int n = 0; n < kModelTicks; ++n) {
-    const std::uint32_t status = sim.tick().status;
-    unsolved += (status & engine::kSolverNotConverged) != 0;
-    ASSERT_EQ(status & ~engine::kSolverNotConverged, 0u) << "tick " << n;
+  tellAtRandom(last, seed, scene);
+  return Simulation(std::move(scene));
+}
+
+class RobotModels : public ::testing::TestWithParam<const char*> {};
+
+// Stops, brakes and feet of long arms and free bases, whose movers are several blocks, once left up to a hundred ticks
+// of ten seconds unsolved.
+TEST_P(RobotModels, StaySolvedAndFiniteWhateverTheirDrivesAreTold) {
+  constexpr double kSeconds = 10;
+  Simulation sim = toldAtRandom(GetParam(), kSeconds, 1);
+  while (sim.time() < kSeconds) {
+    // more hits on stops in one tick than it is cut for do land (docs/engine.md)
+    ASSERT_EQ(sim.tick().status & ~engine::kImpactsCut, 0u) << "at " << sim.time() << " s";
     for (const engine::BodyState& body : sim.state().world.bodies)
       ASSERT_TRUE(body.X_WI.p.allFinite() && body.v_W.allFinite());
   }
-  // Parts that stops and drives press against each other may contradict each other (docs/robots.md).
-  EXPECT_LE(unsolved, kModelTicks / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Menagerie, RobotModels,
