@@ -284,10 +284,13 @@ void gather(const WorldModel& model, WorldScratch& scratch) {
 // For how long warm starts have to be exact to round-off: from an answer that took iterations on, until it is clear
 // that none comes that is. One that fits isn't the end of it: the impulses of a body that still slows down by 1e-13 m/s
 // in a tick, kept, would turn it round and move it off.
-int nextSettling(const Island& island, bool rings, double tolerance) {
-  if (!(island.result.start <= tolerance)) return rings ? kRingingTicks : kSettlingTicks;
-  if (island.result.method == SolveMethod::kWarmStart) return island.settling > 0 ? kSettlingTicks : 0;
-  return island.settling - 1;
+// Of links the number never grows while warm starts stay within the tolerance: drives push by the round-off of their
+// coordinates, so that no exact one lasts, and at most so many ticks take iterations for that alone.
+int nextSettling(const Island& island, bool on_pads, bool on_links, double tolerance) {
+  if (!(island.result.start <= tolerance)) return on_pads || on_links ? kRingingTicks : kSettlingTicks;
+  if (island.result.method != SolveMethod::kWarmStart) return island.settling - 1;
+  if (on_links) return std::min(island.settling, kSettlingTicks);
+  return island.settling > 0 ? kSettlingTicks : 0;
 }
 
 // True if fingertips hold with more contacts than one each, as pads do.
@@ -303,8 +306,7 @@ double restSpeed(const Island& island, const SolverOptions& options) {
 }
 
 void scatter(const IslandScratch& s, const Island& island, const SolverOptions& options, WorldScratch& scratch) {
-  const bool rings = isHeldByPads(s, island, scratch) || holdsTrees(s, island);
-  const int settling = nextSettling(island, rings, options.tolerance);
+  const int settling = nextSettling(island, isHeldByPads(s, island, scratch), holdsTrees(s, island), options.tolerance);
   const double rest_speed = island.result.method == SolveMethod::kWarmStart ? restSpeed(island, options) : 0;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   Contact* const contacts = scratch.contacts.data();
