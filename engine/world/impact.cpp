@@ -345,6 +345,22 @@ bool impactsWait(const WorldModel& model, const WorldState& state, const WorldSc
          });
 }
 
+bool somethingBounces(const WorldScratch& scratch) {
+  return std::any_of(scratch.contacts.begin(), scratch.contacts.end(),
+                     [](const Contact& c) { return c.bias_C[kNormalRow] != 0; });
+}
+
+ImpactPair hardestHit(const WorldScratch& scratch) {
+  ImpactPair pair{-1, -1};
+  double largest = 0;
+  for (const Contact& c : scratch.contacts) {
+    if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody || !(c.r[kNormalRow] > largest)) continue;
+    largest = c.r[kNormalRow];
+    pair = {c.a.index, c.b.index};
+  }
+  return pair;
+}
+
 bool applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source) {
   predictImpact(model, state, scratch);
   collideBodies(model, state, scratch);
@@ -360,7 +376,7 @@ bool applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scra
     solveContacts(model, scratch);
     sharpenSingleImpact(scratch);
     gatherImpulses(model, scratch);
-    if (!BroughtIn(scratch).isMore()) break;
+    if (!BroughtIn(scratch).isMore() || !somethingBounces(scratch)) break;
   }
   takeOutEnergy(model, scratch);
   const bool turns_too_far = limitTurns(model, scratch);

@@ -70,6 +70,11 @@ Vec3 endVelocity(const WorldModel& model, const WorldScratch& scratch, int body)
 // And how fast a dynamic body turns, by the inertia of the tick's middle [rad/s].
 Vec3 endAngularVelocity(const WorldModel& model, const WorldScratch& scratch, int body);
 
+// Of the hit just applied: true if some contact of it bounces; the bodies between
+// which the normal impulse is the largest, -1 for none.
+bool somethingBounces(const WorldScratch& scratch);
+ImpactPair hardestHit(const WorldScratch& scratch);
+
 // Makes the velocities of `state` those just after the hits at its present poses. True if something
 // had to be kept from turning too far (limitTurns).
 bool applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scratch, ContactSource* source);

@@ -129,7 +129,7 @@ class Tick {
     const double h = model_.options.h;
     left_ = part_ = h;
     impacts_ = landings_ = 0;
-    last_hit_ = {-1, -1};
+    last_pair_ = last_hit_ = {-1, -1};
     scratch_.pushed_pairs.clear();
     scratch_.tried.clear();
     is_tried_ = false;
@@ -182,12 +182,20 @@ class Tick {
     if (isRepeated(t) || are_enough) impacts_ = kMostImpacts;
   }
 
-  // The hits before were those of the same pair, and no time went by: it lands.
+  // True if the hits before were of the same pair without any time between, or of the same bodies without a bounce
+  // and with hardly any: what rattles between two others would hit them ever sooner, without end. It lands.
   bool isRepeated(double t) {
-    constexpr int kMostRepeats = 3;  // hits of one pair at one moment (decision 11)
-    const ImpactPair pair = scratch_.impact_pairs.front(), last = std::exchange(last_hit_, pair);
-    const bool is_same = !(t > kShortestPart * model_.options.h) && pair.a == last.a && pair.b == last.b;
-    repeats_ = is_same ? repeats_ + 1 : 0;
+    constexpr int kMostRepeats = 3;  // hits in a row (decision 11)
+    constexpr double kSoon = 1e-2;   // of a tick
+    const ImpactPair pair = scratch_.impact_pairs.front(), last = std::exchange(last_pair_, pair);
+    const ImpactPair hit = hardestHit(scratch_), last_hit = std::exchange(last_hit_, hit);
+    const auto is_hit_again = [&](int body) {
+      return body >= 0 && model_.bodies[body].dynamic && (body == last_hit.a || body == last_hit.b);
+    };
+    const bool at_once = !(t > kShortestPart * model_.options.h) && pair.a == last.a && pair.b == last.b;
+    const bool rattles =
+        !(t > kSoon * model_.options.h) && (is_hit_again(hit.a) || is_hit_again(hit.b)) && !somethingBounces(scratch_);
+    repeats_ = at_once || rattles ? repeats_ + 1 : 0;
     return repeats_ >= kMostRepeats;
   }
 
@@ -353,8 +361,8 @@ class Tick {
   bool turns_far_ = false;  // something does in this part, and it can't be cut any more
   int impacts_ = 0;         // in this tick
   int landings_ = 0;        // of them that don't bounce
-  ImpactPair last_hit_{-1, -1};
-  int repeats_ = 0;  // of it, at once
+  ImpactPair last_pair_{-1, -1}, last_hit_{-1, -1};
+  int repeats_ = 0;  // of them, hardly any time apart
   StepReport report_;
 };
 

@@ -127,6 +127,23 @@ TEST(Wall, ThatIsHitTakesNoMoreThanItsShareOfWork) {
   }
 }
 
+// A brick that rattled between two others hit them ever sooner, 50 ns apart in the end: it cut the tick sixteen times,
+// with three solves each. The fourth such hit lands.
+TEST(Wall, ThatIsHitIsNotCutEverSoonerByBricksThatRattle) {
+  struct Hit {
+    int columns, rows;
+    double speed;
+  };
+  for (const Hit& hit : {Hit{2, 3, 10}, {4, 4, 10}, {4, 4, 20}, {4, 8, 10}}) {
+    Wall wall({.columns = hit.columns, .rows = hit.rows, .hit_speed = hit.speed}, {});
+    const ScratchHandle scratch = makeScratch(wall.model);
+    int most_parts = 0;
+    for (int n = 0; n < 40; ++n) most_parts = std::max(most_parts, step(wall.model, wall.state, *scratch).parts);
+    EXPECT_GT(most_parts, 3) << hit.columns << " x " << hit.rows << ", " << hit.speed;  // each hit cuts it once
+    EXPECT_LE(most_parts, 8) << hit.columns << " x " << hit.rows << ", " << hit.speed;
+  }
+}
+
 // The same bits whatever the threads.
 TEST(Wall, HasTheSameBitsAgain) {
   std::uint64_t hashes[2];
