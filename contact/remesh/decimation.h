@@ -21,14 +21,15 @@ namespace pincer::contact {
 
 class Decimation {
  public:
-  // Requires a well-formed, manifold mesh, and 0 < crease_angle <= pi [rad]. `error`:
-  // that is allowed [m], > 0; kInfinity for any.
-  Decimation(const TriangleMesh& mesh, double crease_angle, bool use_file_normals, double error);
+  // Requires a well-formed, manifold mesh, and 0 < crease_angle <= pi [rad]. `stays`: vertices that may not move, by
+  // their indices; empty: any may.
+  Decimation(const TriangleMesh& mesh, double crease_angle, bool use_file_normals, const std::vector<bool>& stays);
   ~Decimation();
 
   int triangles() const;
-  // Removes vertices until at most `triangles` are left, or none can be removed.
-  void reduceTo(int triangles);
+  // Removes vertices until at most `triangles` are left, or none can be removed. `error`: that is allowed [m], > 0;
+  // kInfinity for any. Called again, it goes on; an error that is larger then allows more.
+  void reduceTo(int triangles, double error);
   // The mesh as it is now: vertices in the input's order, a normal at each corner, no smoothing groups.
   TriangleMesh mesh() const;
 

@@ -7,9 +7,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "pincer/contact/assert.h"
 #include "pincer/contact/mesh/connectivity.h"
-#include "pincer/contact/mesh/half_edges.h"
 #include "pincer/contact/remesh/decimation.h"
+#include "pincer/contact/remesh/vertex_normals.h"
 #include "pincer/contact/surface/smooth_patch.h"
 
 namespace pincer::contact {
@@ -50,56 +51,6 @@ double slendernessOf(const std::array<Vec3, 3>& p) {
       std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
   return longest2 > 0 ? facetOf(p).norm() / longest2 : 0;
 }
-
-// The shading normals at each vertex, one per side of its creases, and how it may move.
-class VertexNormals {
- public:
-  VertexNormals(const TriangleMesh& mesh, const CornerNormals& corners)
-      : at_(mesh.vertices.size()), on_crease(mesh.vertices.size()), stays(mesh.vertices.size()) {
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      for (std::size_t i = 0; i < 3; ++i) add(mesh.triangles[t][i], corners.normals[t][i]);
-    }
-    findCreases(mesh, corners);
-  }
-
-  // The one that belongs to a facet.
-  const Vec3& nearest(std::size_t vertex, const Vec3& facet) const {
-    const std::vector<Vec3>& normals = at_[vertex];
-    return *std::max_element(normals.begin(), normals.end(),
-                             [&](const Vec3& a, const Vec3& b) { return a.dot(facet) < b.dot(facet); });
-  }
-
- private:
-  void add(std::int32_t vertex, const Vec3& n) {
-    std::vector<Vec3>& normals = at_[static_cast<std::size_t>(vertex)];
-    if (std::find(normals.begin(), normals.end(), n) == normals.end()) normals.push_back(n);
-  }
-
-  // A vertex with two creases that go straight on, to 40 degrees, is inside a crease; any other with creases stays.
-  void findCreases(const TriangleMesh& mesh, const CornerNormals& corners) {
-    constexpr double kStraight = 0.468;  // |a + b|^2 of unit directions that miss opposite ones by 40 degrees
-    std::vector<int> creases(at_.size(), 0);
-    std::vector<Vec3> sum(at_.size(), Vec3::Zero());
-    forEachEdge(sortedHalfEdges(mesh.triangles), [&](auto edge) {
-      if (!corners.sharp[static_cast<std::size_t>(edge[0].triangle)][static_cast<std::size_t>(edge[0].side)]) return;
-      const auto low = static_cast<std::size_t>(edge[0].low), high = static_cast<std::size_t>(edge[0].high);
-      const Vec3 way = (mesh.vertices[high] - mesh.vertices[low]).normalized();
-      ++creases[low];
-      ++creases[high];
-      sum[low] += way;
-      sum[high] -= way;
-    });
-    for (std::size_t v = 0; v < creases.size(); ++v) {
-      on_crease[v] = creases[v] > 0;
-      stays[v] = on_crease[v] && (creases[v] != 2 || sum[v].squaredNorm() > kStraight);
-    }
-  }
-
-  std::vector<std::vector<Vec3>> at_;
-
- public:
-  std::vector<bool> on_crease, stays;
-};
 
 struct Original {
   const std::vector<Vec3>& vertices;
@@ -196,10 +147,7 @@ class MoveRules : public OpenMesh::Decimater::ModBaseT<Kernel> {
     return static_cast<float>(std::max(p.dot(quadrics_[indexOf(move.v0)] * p), 0.0) + kShortFirst * length2 * length2);
   }
 
-  void preprocess_collapse(const Move& move) override {
-    if (original_->error == kInfinity) return;
-    rehouse(move);
-  }
+  void preprocess_collapse(const Move& move) override { rehouse(move); }
   void postprocess_collapse(const Move& move) override { quadrics_[indexOf(move.v1)] += quadrics_[indexOf(move.v0)]; }
 
  private:
@@ -325,16 +273,17 @@ class MoveRules : public OpenMesh::Decimater::ModBaseT<Kernel> {
 
 class Decimation::Data {
  public:
-  Data(const TriangleMesh& mesh, double crease_angle, bool use_file_normals, double error)
-      : vertices_(mesh.vertices),
-        source_(mesh.source),
-        normals_(mesh, findCornerNormals(mesh, findNeighbours(mesh), crease_angle, use_file_normals)),
-        original_{vertices_, normals_, error},
+  Data(const TriangleMesh& mesh, double crease_angle, bool use_file_normals, const std::vector<bool>& stays)
+      : input_(mesh),
+        corners_(findCornerNormals(mesh, findNeighbours(mesh), crease_angle, use_file_normals)),
+        normals_(mesh, corners_, stays),
+        original_{input_.vertices, normals_, kInfinity},
         triangles_(static_cast<int>(mesh.triangles.size())) {
     for (const Vec3& p : mesh.vertices) kernel_.add_vertex({p.x(), p.y(), p.z()});
     for (const auto& [a, b, c] : mesh.triangles) {
       kernel_.add_face(OpenMesh::VertexHandle(a), OpenMesh::VertexHandle(b), OpenMesh::VertexHandle(c));
     }
+    PINCER_ASSERT(kernel_.n_faces() == mesh.triangles.size());  // so that faces count as triangles do
     decimater_.add(rules_);
     decimater_.module(rules_).setOriginal(&original_);
     decimater_.initialize();
@@ -342,7 +291,8 @@ class Decimation::Data {
 
   int triangles() const { return triangles_; }
 
-  void reduceTo(int triangles) {
+  void reduceTo(int triangles, double error) {
+    original_.error = error;
     while (triangles_ > triangles) {
       // each takes two triangles, on a border one
       const auto moves = static_cast<std::size_t>((triangles_ - triangles + 1) / 2);
@@ -354,12 +304,12 @@ class Decimation::Data {
 
   TriangleMesh mesh() const {
     TriangleMesh result;
-    result.source = source_;
-    std::vector<std::int32_t> number(vertices_.size(), -1);
+    result.source = input_.source;
+    std::vector<std::int32_t> number(input_.vertices.size(), -1);
     for (const auto v : kernel_.all_vertices()) {
       if (kernel_.status(v).deleted() || kernel_.is_isolated(v)) continue;
       number[indexOf(v)] = static_cast<std::int32_t>(result.vertices.size());
-      result.vertices.push_back(Vec3(vertices_[indexOf(v)]));
+      result.vertices.push_back(Vec3(input_.vertices[indexOf(v)]));
     }
     for (const auto face : kernel_.all_faces()) {
       if (!kernel_.status(face).deleted()) addTriangle(face, number, result);
@@ -368,33 +318,42 @@ class Decimation::Data {
   }
 
  private:
+  // A corner that never moved keeps its own normal; one that did gets that which belongs to the facet.
   void addTriangle(Kernel::FaceHandle face, const std::vector<std::int32_t>& number, TriangleMesh& result) const {
+    const auto& before = input_.triangles[indexOf(face)];
     std::array<std::size_t, 3> v{};
     std::size_t i = 0;
     for (const auto vertex : kernel_.fv_range(face)) v[i++] = indexOf(vertex);
-    const Vec3 facet = facetOf({vertices_[v[0]], vertices_[v[1]], vertices_[v[2]]});
+    const auto& p = input_.vertices;
+    const Vec3 facet = facetOf({p[v[0]], p[v[1]], p[v[2]]});
     const auto first = static_cast<std::int32_t>(result.normals.size());
     result.triangles.push_back({number[v[0]], number[v[1]], number[v[2]]});
     result.triangle_normals.push_back({first, first + 1, first + 2});
-    for (const std::size_t corner : v) result.normals.push_back(Vec3(normals_.nearest(corner, facet)));
+    for (const std::size_t corner : v) {
+      const auto own = std::find(before.begin(), before.end(), static_cast<std::int32_t>(corner));
+      result.normals.push_back(own == before.end()
+                                   ? Vec3(normals_.nearest(corner, facet))
+                                   : corners_.normals[indexOf(face)][static_cast<std::size_t>(own - before.begin())]);
+    }
   }
 
-  const std::vector<Vec3> vertices_;
-  const std::string source_;
+  const TriangleMesh input_;
+  const CornerNormals corners_;
   const VertexNormals normals_;
-  const Original original_;
+  Original original_;
   int triangles_;
   Kernel kernel_;
   OpenMesh::Decimater::DecimaterT<Kernel> decimater_{kernel_};
   MoveRules::Handle rules_;
 };
 
-Decimation::Decimation(const TriangleMesh& mesh, double crease_angle, bool use_file_normals, double error)
-    : data_(std::make_unique<Data>(mesh, crease_angle, use_file_normals, error)) {}
+Decimation::Decimation(const TriangleMesh& mesh, double crease_angle, bool use_file_normals,
+                       const std::vector<bool>& stays)
+    : data_(std::make_unique<Data>(mesh, crease_angle, use_file_normals, stays)) {}
 Decimation::~Decimation() = default;
 
 int Decimation::triangles() const { return data_->triangles(); }
-void Decimation::reduceTo(int triangles) { data_->reduceTo(triangles); }
+void Decimation::reduceTo(int triangles, double error) { data_->reduceTo(triangles, error); }
 TriangleMesh Decimation::mesh() const { return data_->mesh(); }
 
 }  // namespace pincer::contact

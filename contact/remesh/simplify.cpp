@@ -17,6 +17,7 @@ namespace pincer::contact {
 namespace {
 
 constexpr std::size_t kMostProbes = 20000;  // over all of the mesh
+constexpr int kMostRounds = 8;              // chosen: what is missed then are folded patches
 
 // Small balls that touch a smooth surface from outside.
 class Probes {
@@ -31,40 +32,49 @@ class Probes {
         const auto v = static_cast<std::size_t>(surface.triangles().triangles[t][i]);
         if (seen[v]) continue;
         seen[v] = true;
-        centres_.push_back(places[i] + radius_ * normals[i]);
+        probes_.push_back({places[i] + radius_ * normals[i], v});
       }
     }
     thinOut(surface);
   }
 
   struct Error {
-    double greatest = 0, typical = 0;
+    double greatest = 0, typical = 0;  // [m]
+    std::vector<std::size_t> missed;   // vertices of the input, by more than is allowed
+    std::size_t probes = 0;
   };
-  Error errorOf(const TriangleMesh& mesh) const {
+  Error errorOf(const TriangleMesh& mesh, double allowed) const {
     const auto surface = SmoothMesh::build(mesh);
     Error error;
+    error.probes = probes_.size();
     double sum = 0;
-    for (const Vec3& p : centres_) {
-      const double d = std::abs(heightOver(*surface, p));
+    for (const Probe& probe : probes_) {
+      const double d = std::abs(heightOver(*surface, probe.centre));
       error.greatest = std::max(error.greatest, d);
       sum += d * d;
+      if (!(d <= allowed)) error.missed.push_back(probe.vertex);
     }
-    error.typical = centres_.empty() ? 0 : std::sqrt(sum / static_cast<double>(centres_.size()));
+    error.typical = probes_.empty() ? 0 : std::sqrt(sum / static_cast<double>(probes_.size()));
     return error;
   }
 
  private:
   static constexpr double kRadius = 0.01;  // of half the mesh's greatest dimension
 
+  struct Probe {
+    Vec3 centre;
+    std::size_t vertex;
+  };
+
   // Leaves out what touches another place first, as in a hollow: which one it touches may change without an error.
   void thinOut(const SmoothMesh& surface) {
     constexpr double kTouches = 1e-6;  // of the radius: further away another place is nearer
-    const std::size_t stride = (centres_.size() + kMostProbes - 1) / kMostProbes;
-    std::vector<Vec3> kept;
-    for (std::size_t i = 0; i < centres_.size(); i += stride) {
-      if (std::abs(heightOver(surface, centres_[i])) < kTouches * radius_) kept.push_back(centres_[i]);
+    const std::size_t stride = (probes_.size() + kMostProbes - 1) / kMostProbes;
+    std::vector<Probe> kept;
+    for (std::size_t i = 0; i < probes_.size(); i += stride) {
+      if (std::abs(heightOver(surface, probes_[i].centre)) < kTouches * radius_) kept.push_back(probes_[i]);
     }
-    centres_ = std::move(kept);
+    probes_ = std::move(kept);
   }
   double heightOver(const SmoothMesh& surface, const Vec3& p) const {
     SurfaceTracker from_scratch;
@@ -73,7 +83,7 @@ class Probes {
 
   double radius_;
   PatchCacheHandle cache_;
-  std::vector<Vec3> centres_;
+  std::vector<Probe> probes_;
 };
 
 void requireInRange(const TriangleMesh& mesh, const SimplifyOptions& options) {
@@ -97,21 +107,43 @@ double greatestDimension(const TriangleMesh& mesh) {
   return size;
 }
 
+// To so many triangles by the least error that leads there, to a factor of two.
+void reduceTo(int triangles, Decimation& decimation, double size) {
+  constexpr double kLeast = 1e-6, kMost = 1e-2;  // errors that are tried, of the size
+  for (double error = kLeast * size; error < kMost * size; error *= 2) decimation.reduceTo(triangles, error);
+  decimation.reduceTo(triangles, kInfinity);
+}
+
+// Holds the vertices that were missed where they are few; all to less where they are many, or come up again and again.
+void tighten(const Probes::Error& measured, double error, int round, double& allowed, std::vector<bool>& stays) {
+  constexpr double kFew = 0.02, kBelow = 0.9,
+                   kLeast = 0.5;  // of all probes; of the bound that would just do; at a time
+  const bool are_few = static_cast<double>(measured.missed.size()) < kFew * static_cast<double>(measured.probes);
+  if (!are_few || round >= kMostRounds / 2) allowed *= kBelow * std::max(kLeast, error / measured.greatest);
+  if (!are_few) return;
+  for (const std::size_t vertex : measured.missed) stays[vertex] = true;
+}
+
 }  // namespace
 
 SimplifiedMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
   requireInRange(mesh, options);
   const SurfaceOptions as_given{.crease_angle = options.crease_angle, .use_file_normals = options.use_file_normals};
-  const Probes probes(*SmoothMesh::build(mesh, as_given), greatestDimension(mesh) / 2);
-  Decimation decimation(mesh, options.crease_angle, options.use_file_normals,
-                        options.error > 0 ? options.error : kInfinity);
-  decimation.reduceTo(options.triangles);
-  SimplifiedMesh result;
-  result.mesh = decimation.mesh();
-  const Probes::Error error = probes.errorOf(result.mesh);
-  result.error = error.greatest;
-  result.typical = error.typical;
-  return result;
+  const double size = greatestDimension(mesh);
+  const Probes probes(*SmoothMesh::build(mesh, as_given), size / 2);
+  std::vector<bool> stays(mesh.vertices.size());
+  double allowed = options.error;
+  for (int round = 0;; ++round) {
+    Decimation decimation(mesh, options.crease_angle, options.use_file_normals, stays);
+    if (options.error > 0) decimation.reduceTo(options.triangles, allowed);
+    if (!(options.error > 0)) reduceTo(options.triangles, decimation, size);
+    SimplifiedMesh result{decimation.mesh()};
+    const Probes::Error error = probes.errorOf(result.mesh, options.error > 0 ? options.error : kInfinity);
+    result.error = error.greatest;
+    result.typical = error.typical;
+    if (error.missed.empty() || round == kMostRounds) return result;
+    tighten(error, options.error, round, allowed, stays);
+  }
 }
 
 }  // namespace pincer::contact

@@ -59,12 +59,28 @@ contact::SimplifiedMesh simplified(const contact::TriangleMesh& mesh, const Fine
   return contact::simplify(mesh, options);
 }
 
+// Sentences about what wasn't reached of what was asked for.
+void sayWhatIsMissing(const contact::SimplifiedMesh& simple, const FinenessArguments& arguments) {
+  const auto left = static_cast<int>(simple.mesh.triangles.size());
+  if (arguments.triangles > 0 && arguments.error == 0 && left > arguments.triangles) {
+    print("{} triangles can't be reached: creases, corners and borders stay, and no facet may turn over.\n",
+          arguments.triangles);
+  }
+  if (arguments.error > 0 && 1e6 * simple.error > arguments.error) {
+    print(
+        "{:g} um can't be kept to everywhere: where the smooth surface folds over itself no normals in a file say "
+        "what is felt. `pincer mesh check` names such places; refine or mend them first.\n",
+        arguments.error);
+  }
+}
+
 void simplifyFile(const FinenessArguments& arguments) {
   const contact::TriangleMesh mesh = readWithProgress(arguments.input);
   const contact::SimplifiedMesh simple = simplified(mesh, arguments);
   print("{}: {} of {} triangles; the smooth surface is off by {:.3g} um at most, typically {:.2g} um\n",
         printable(arguments.input.file), simple.mesh.triangles.size(), mesh.triangles.size(), 1e6 * simple.error,
         1e6 * simple.typical);
+  sayWhatIsMissing(simple, arguments);
   writeAndSay(arguments.input, arguments.out, simple.mesh, arguments.input.units);
 }
 

@@ -33,7 +33,7 @@ TEST(MeshSimplify, KeepsTheSmoothBallToTheErrorThatIsAllowed) {
   std::size_t before = fine.triangles.size();
   for (const double error : {2e-6, 20e-6, 100e-6}) {
     const SimplifiedMesh simple = simplify(fine, {.error = error});
-    EXPECT_LE(simple.error, 1.3 * error) << "a facet remembers eight of the vertices that went";
+    EXPECT_LE(simple.error, error);
     EXPECT_LE(greatestErrorOfBall(simple.mesh, radius), 1.5 * error) << "between the input's vertices too";
     EXPECT_TRUE(inspect(simple.mesh).isFit());
     EXPECT_LT(simple.mesh.triangles.size(), before) << "of " << before;
@@ -89,6 +89,19 @@ TEST(MeshSimplify, AnOpenBorderStaysWhereItIs) {
   EXPECT_EQ(simple.mesh.triangles.size(), 10u);
   EXPECT_EQ(inspect(simple.mesh).boundary_edges, 4);
   EXPECT_NEAR(inspect(simple.mesh).area, 5 * 0.04 * 0.04, 1e-12);
+}
+
+// Single places along creases that curve were off by up to 90 times what was allowed, in hollows and noise by 7 times.
+TEST(MeshSimplify, NoPlaceIsOffByMoreThanIsAllowed) {
+  for (const double error : {5e-6, 100e-6}) {
+    for (const TriangleMesh& mesh :
+         {cylinderWithFlat(0.02, 0.03, 0.012, 120, 20), noisy(bumpySphere(0.02, 0.1, 4, 20), 1e-5, 4),
+          noisy(grooveBlock(M_PI / 3, 0.01, 0.04, 0.04), 2e-5, 2), torus(0.03, 0.01, 80, 40)}) {
+      const SimplifiedMesh simple = simplify(mesh, {.error = error});
+      EXPECT_LE(simple.error, error) << mesh.source;
+      EXPECT_LE(simple.mesh.triangles.size(), mesh.triangles.size());
+    }
+  }
 }
 
 TEST(MeshSimplify, GivesTheSameBitsEachTime) {
