@@ -69,12 +69,14 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
   const bool is_few = problem.contactCount() <= kFewContacts;
-  // a heavy trunk that lands on several of its legs at once: Newton's method for few contacts finds no way
-  const bool may_search = problem.contactCount() >= kManyContacts || !problem.first_side.empty();
-  if (is_few) solveFew(problem, options, scratch, r, u, result);
-  if (!is_few ||
-      (!result.converged && !result.yields && may_search && options.thorough && scratch.operations_left >= 0))
-    result = searchImpulses(problem, options, scratch, r, u);
+  const bool searches = !is_few || problem.on_links;
+  if (searches) result = searchImpulses(problem, options, scratch, r, u);
+  if (is_few && !(searches && (result.converged || result.yields))) {
+    solveFew(problem, options, scratch, r, u, result);
+    const bool may_search = problem.contactCount() >= kManyContacts && !searches;
+    if (!result.converged && !result.yields && may_search && options.thorough && scratch.operations_left >= 0)
+      result = searchImpulses(problem, options, scratch, r, u);
+  }
   settleEnergy(problem, scratch, r, u, result);
 }
 

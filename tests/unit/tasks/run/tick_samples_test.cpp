@@ -59,10 +59,10 @@ std::vector<FingerInputs> samplesAt(const TickModel& model, int tick) {
   return samples;
 }
 
-using Recording = std::vector<std::vector<FingerInputs>>;
+using AllInputs = std::vector<std::vector<FingerInputs>>;
 
-Recording record(const TickModel& model, int first, int ticks) {
-  Recording recording;
+AllInputs record(const TickModel& model, int first, int ticks) {
+  AllInputs recording;
   for (int k = first; k < first + ticks; ++k) recording.push_back(samplesAt(model, k));
   return recording;
 }
@@ -77,7 +77,7 @@ struct Trace {
   }
 };
 
-Trace play(const TickModel& model, TickState& state, const Recording& recording, int first) {
+Trace play(const TickModel& model, TickState& state, const AllInputs& recording, int first) {
   TickScratch scratch(model);
   Trace trace;
   for (std::size_t k = 0; k < recording.size(); ++k) {
@@ -107,7 +107,7 @@ struct LiveRig : Rig {
 
 TEST(Tick, GivesTheSameBitsForTheSameSamples) {
   Rig a, b;
-  const Recording recording = record(a.model, 0, 400);
+  const AllInputs recording = record(a.model, 0, 400);
   const Trace first = play(a.model, a.state, recording, 0);
   EXPECT_EQ(first, play(b.model, b.state, recording, 0));
   EXPECT_NE(first.hashes.front(), first.hashes.back());  // something happened
@@ -117,7 +117,7 @@ TEST(Tick, ReplaysARecordingFromASnapshot) {
   Rig rig;
   play(rig.model, rig.state, record(rig.model, 0, 150), 0);
   TickState snapshot = rig.state;
-  const Recording rest = record(rig.model, 150, 300);
+  const AllInputs rest = record(rig.model, 150, 300);
   const Trace live = play(rig.model, rig.state, rest, 150);
   EXPECT_EQ(live, play(rig.model, snapshot, rest, 150));  // with a scratch of its own: nothing is remembered there
 }
@@ -125,8 +125,8 @@ TEST(Tick, ReplaysARecordingFromASnapshot) {
 // One bit of one sample shows in the outcome: the equalities above aren't those of a tick that ignores its input.
 TEST(Tick, TellsSamplesApartByOneBit) {
   Rig a, b;
-  const Recording recording = record(a.model, 0, 300);
-  Recording nudged = recording;
+  const AllInputs recording = record(a.model, 0, 300);
+  AllInputs nudged = recording;
   double& x = nudged[200][0].arm.p_DF.x();
   x = std::nextafter(x, 1);
   const Trace first = play(a.model, a.state, recording, 0), second = play(b.model, b.state, nudged, 0);
@@ -137,7 +137,7 @@ TEST(Tick, TellsSamplesApartByOneBit) {
 TEST(Tick, AllocatesNothing) {
   if (!tests::allocationsAreCounted()) GTEST_SKIP() << "the sanitizer owns the allocator";
   LiveRig rig;
-  const Recording recording = record(rig.model, 0, 500);
+  const AllInputs recording = record(rig.model, 0, 500);
   rig.step(recording[0]);
   const auto before = tests::allocationCount();
   for (std::size_t k = 1; k < recording.size(); ++k) rig.step(recording[k]);
@@ -305,7 +305,7 @@ TEST(Tick, PassivityChangesForcesOnlyWhereItIsOn) {
   Rig plain, watched, braked;
   watched.state.passivity = braked.state.passivity = grasp::PassivityState(2);
   braked.model.passivity.on = true;
-  Recording recording = record(plain.model, 0, 400);
+  AllInputs recording = record(plain.model, 0, 400);
   for (std::vector<FingerInputs>& samples : recording) {
     for (std::size_t i = 0; i < 2; ++i) {
       samples[i].arm.p_DF -= plain.model.mounts[i].X_WD.q.conjugate() * Vec3(0, 0, 0.1 * samples[i].arm.time);

@@ -19,7 +19,7 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kRoundOff = 1e-12;  // of metres, kilograms and kg m^2, along chains of ten links
+constexpr double kAlongChains = 1e-12;  // of metres, kilograms and kg m^2, along chains of ten links
 
 #if PINCER_HAS_URDFDOM
 
@@ -40,13 +40,13 @@ void compareMass(const urdf::Link& theirs, const engine::MassProperties& ours) {
   const Mat3 R = X_BI.q.toRotationMatrix();
   Mat3 I;
   I << m.ixx, m.ixy, m.ixz, m.ixy, m.iyy, m.iyz, m.ixz, m.iyz, m.izz;
-  EXPECT_LT((ours.p_BBcm - X_BI.p).norm(), kRoundOff);
-  EXPECT_LT((ours.I_BBcm - R * I * R.transpose()).norm(), kRoundOff);
+  EXPECT_LT((ours.p_BBcm - X_BI.p).norm(), kAlongChains);
+  EXPECT_LT((ours.I_BBcm - R * I * R.transpose()).norm(), kAlongChains);
 }
 
 void compareJoint(const urdf::Joint& theirs, const RobotJoint& ours) {
   EXPECT_EQ(ours.name, theirs.name);
-  EXPECT_LT((ours.axis_B - Vec3(theirs.axis.x, theirs.axis.y, theirs.axis.z).normalized()).norm(), kRoundOff);
+  EXPECT_LT((ours.axis_B - Vec3(theirs.axis.x, theirs.axis.y, theirs.axis.z).normalized()).norm(), kAlongChains);
   if (ours.limits) {
     EXPECT_EQ(*ours.limits, Vec2(theirs.limits->lower, theirs.limits->upper));
   }
@@ -67,7 +67,7 @@ void compare(const std::string& file) {
     const auto link = theirs->getLink(body.name);
     ASSERT_TRUE(link);
     const Pose X_WB = placeOf(*link);
-    EXPECT_LT((poses[i].p - X_WB.p).norm(), kRoundOff);
+    EXPECT_LT((poses[i].p - X_WB.p).norm(), kAlongChains);
     EXPECT_LT(poses[i].q.angularDistance(X_WB.q), 1e-7);  // the arc cosine's of 1 less round-off
     EXPECT_EQ(body.geoms.size(), link->collision_array.size());
     compareMass(*link, body.inertia);
