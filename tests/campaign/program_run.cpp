@@ -116,7 +116,8 @@ bool awaitEnd(int handle, double until) {
   }
 }
 
-// The longest that a thread of the process has stood ready without getting a processor [s]; 0 where the kernel doesn't tell.
+// The longest that a thread of the process has stood ready without getting a processor [s]; 0 where the kernel doesn't
+// tell.
 double waitedForProcessor(pid_t process) {
   double longest = 0;
   std::error_code ended;
