@@ -69,11 +69,11 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
   const bool is_few = problem.contactCount() <= kFewContacts;
-  const bool searches = !is_few || problem.on_links || !problem.first_side.empty();
+  const bool searches = !is_few || problem.on_links;
   if (searches) result = searchImpulses(problem, options, scratch, r, u);
   if (is_few && !(searches && (result.converged || result.yields))) {
     solveFew(problem, options, scratch, r, u, result);
-    const bool may_search = problem.contactCount() >= kManyContacts && !searches;
+    const bool may_search = !searches && (problem.contactCount() >= kManyContacts || !problem.first_side.empty());
     if (!result.converged && !result.yields && may_search && options.thorough && scratch.operations_left >= 0)
       result = searchImpulses(problem, options, scratch, r, u);
   }
