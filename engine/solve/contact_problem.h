@@ -78,9 +78,9 @@ struct ContactProblem {
   int movers = 0;
   bool strict = false;  // the warm start is only taken where it is exact to round-off, see contact_solver.h
   bool calm = false;    // nothing of it moves faster than rest (restErrorOf)
-  // Some contact pushes on a link. Jaws that joints keep parallel ask more of what they hold than it has freedoms: of
+  // Some contact pushes on an arm of several blocks, which asks more of what it holds than that has freedoms: of
   // impulses within it that move nothing the search keeps those of the last tick, Newton's method would take any.
-  bool on_links = false;
+  bool on_long_arms = false;
   std::span<const RoundContact> round = {};  // of each contact; empty where nobody looked
   std::span<const int> first_side = {};      // size n + 1; empty where every contact has two sides
 

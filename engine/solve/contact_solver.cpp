@@ -69,7 +69,7 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
   const bool is_few = problem.contactCount() <= kFewContacts;
-  const bool searches = !is_few || problem.on_links;
+  const bool searches = !is_few || problem.on_long_arms;
   if (searches) result = searchImpulses(problem, options, scratch, r, u);
   if (is_few && !(searches && (result.converged || result.yields))) {
     solveFew(problem, options, scratch, r, u, result);

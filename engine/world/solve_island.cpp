@@ -79,7 +79,7 @@ class IslandSolve {
     ContactProblem problem{
         {island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
         island.settling > 0,       island.calm};
-    problem.on_links = holdsTrees(s, island);
+    problem.on_long_arms = island.has_many_sides;
     if (island.has_many_sides) takeManySides(island, s, problem);
     return problem;
   }
