@@ -151,7 +151,8 @@ void HaplySession::checkForce(ArmState& arm, const DeviceReport& report) {
   }
   const bool steady = arm.pushing_since >= 0 && then - arm.pushing_since > kEchoMemory && arm.test == Echo::kGood;
   if (steady && echo < kAttenuated * most - kEchoOver) ++counts_.attenuated;
-  arm.deaf_since = !steady || echo >= kDeaf * most ? -1 : arm.deaf_since < 0 ? then : arm.deaf_since;
+  const bool answers = most < kEchoForce || echo >= kDeaf * most;  // motors needn't show less than the test of arming
+  arm.deaf_since = !steady || answers ? -1 : arm.deaf_since < 0 ? then : arm.deaf_since;
   if (arm.deaf_since >= 0 && then - arm.deaf_since > kDeafMayLast)
     doubt(
         fmt::format("Inverse3 {} renders nothing of the {:.2f} N that it is sent: an arm that is deaf to a force may "

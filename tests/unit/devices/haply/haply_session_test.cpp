@@ -162,6 +162,18 @@ TEST(HaplySession, DoubtsAnArmThatGoesDeafWhileItPushesEvenly) {
   }
 }
 
+// Forces of a light touch may round to nothing in what the service tells.
+TEST(HaplySession, DoesNotDoubtAnArmWhoseSmallForcesRoundToNothing) {
+  Wire wire;
+  wire.run(0.6);
+  wire.arm();
+  wire.push({0, 0, 0.04});
+  wire.run(0.05);
+  wire.service.setFault(HaplyFault::kDeafToForces);
+  wire.run(1);
+  EXPECT_FALSE(wire.session.doubted()) << wire.session.complaint();
+}
+
 TEST(HaplySession, TakesStatesThatAreFreshAndStatesThatAreOneMessageOld) {
   for (const bool old : {false, true}) {
     Wire wire(twoArms(), {.one_message_old = old});
