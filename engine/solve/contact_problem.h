@@ -69,6 +69,8 @@ inline std::span<const ContactSide> sidesAt(std::span<const ContactSide> sides, 
                        static_cast<std::size_t>(first_side[i + 1] - first_side[i]));
 }
 
+constexpr double kGapNoise = 1e-14;  // of gaps: a tick of 1 ms undoes a fifth of 5e-17 m [m/s]
+
 // Views onto memory that somebody else owns (engine/world's scratch). n contacts, m rows in all.
 struct ContactProblem {
   std::span<const int> first_row;      // size n + 1; contact i owns rows first_row[i] .. first_row[i + 1] - 1
@@ -78,11 +80,9 @@ struct ContactProblem {
   int movers = 0;
   bool strict = false;  // the warm start is only taken where it is exact to round-off, see contact_solver.h
   bool calm = false;    // nothing of it moves faster than rest (restErrorOf)
-  // Some contact pushes on an arm of several blocks, which asks more of what it holds than that has freedoms: of
-  // impulses within it that move nothing the search keeps those of the last tick, Newton's method would take any.
-  bool on_long_arms = false;
   std::span<const RoundContact> round = {};  // of each contact; empty where nobody looked
   std::span<const int> first_side = {};      // size n + 1; empty where every contact has two sides
+  double noise = kGapNoise;                  // what round-off asks for in every tick [m/s]
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return static_cast<int>(q.size()); }

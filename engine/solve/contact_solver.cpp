@@ -40,7 +40,8 @@ void solveFew(const ContactProblem& problem, const SolverOptions& options, Solve
               SolveResult& result) {
   weighContacts(problem, scratch);
   const ContactError start = errorOf(problem, r, scratch, u);
-  const bool is_exact = !problem.strict || start.residual <= exactResidual(options.tolerance, referenceSpeed(problem));
+  const double exact = exactResidual(options.tolerance, problem.noise, referenceSpeed(problem));
+  const bool is_exact = !problem.strict || start.residual <= exact;
   const bool rests = problem.calm && start.speed <= restErrorOf(options);
   result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};
   if (rests || (start.residual <= options.tolerance && is_exact)) return;
@@ -69,14 +70,11 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
   const bool is_few = problem.contactCount() <= kFewContacts;
-  const bool searches = !is_few || problem.on_long_arms;
-  if (searches) result = searchImpulses(problem, options, scratch, r, u);
-  if (is_few && !(searches && (result.converged || result.yields))) {
-    solveFew(problem, options, scratch, r, u, result);
-    const bool may_search = !searches && (problem.contactCount() >= kManyContacts || !problem.first_side.empty());
-    if (!result.converged && !result.yields && may_search && options.thorough && scratch.operations_left >= 0)
-      result = searchImpulses(problem, options, scratch, r, u);
-  }
+  if (is_few) solveFew(problem, options, scratch, r, u, result);
+  const bool may_search = problem.contactCount() >= kManyContacts || !problem.first_side.empty();
+  const bool is_short = is_few && !result.converged && !result.yields && options.thorough;
+  if (!is_few || (is_short && may_search && scratch.operations_left >= 0))
+    result = searchImpulses(problem, options, scratch, r, u);
   settleEnergy(problem, scratch, r, u, result);
 }
 

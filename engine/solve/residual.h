@@ -74,11 +74,10 @@ double referenceSpeed(const ContactProblem& problem);
 // Of the tolerance: what a strict problem asks of its warm start.
 constexpr double kStrictness = 1e-4;
 
-// The residual at which a warm start counts as exact, for a problem of speeds of order `speed` [m/s]: what the
-// round-off of gaps asks for, 5e-17 m of which a tick of 1 ms undoes a fifth, has no impulses that last.
-inline double exactResidual(double tolerance, double speed) {
-  constexpr double kGapNoise = 1e-14;  // [m/s]
-  return std::max(kStrictness * tolerance, std::min(tolerance, kGapNoise / speed));
+// The residual at which a warm start counts as exact: what round-off asks for has no impulses that last.
+//   speed  of the problem, referenceSpeed;  noise  its [m/s]
+inline double exactResidual(double tolerance, double noise, double speed) {
+  return std::max(kStrictness * tolerance, std::min(tolerance, noise / speed));
 }
 
 }  // namespace pincer::engine

@@ -95,7 +95,8 @@ class Search {
   bool isExact() const {
     if (problem_.calm && error_.speed <= restErrorOf(options_)) return true;
     return isWithinTolerance() &&
-           (!problem_.strict || error_.residual <= exactResidual(options_.tolerance, referenceSpeed(problem_)));
+           (!problem_.strict ||
+            error_.residual <= exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_)));
   }
   // Error that is small enough [m/s].
   double limit() const {

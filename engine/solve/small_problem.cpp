@@ -123,7 +123,8 @@ class SmallProblem {
  public:
   static constexpr int m = count * rows;
 
-  explicit SmallProblem(const ContactProblem& problem) : mu_(problem.mu.data()), speed_(referenceSpeed(problem)) {
+  explicit SmallProblem(const ContactProblem& problem)
+      : mu_(problem.mu.data()), speed_(referenceSpeed(problem)), noise_(problem.noise), strict_(problem.strict) {
     copy<m>(problem.q.data(), q_);
     for (int i = 0; i < count; ++i) {
       fillOwn(problem.sidesOf(i), rows * i);
@@ -137,21 +138,20 @@ class SmallProblem {
   }
 
   // Where blocks lose too many digits, as where little moves and much is held, again by rows.
-  bool solve(const SolverOptions& options, bool strict, double* r_out, double* u_out, SolveResult& result) {
-    return solveBy(rows == 3, options, strict, r_out, u_out, result) ||
-           (rows == 3 && solveBy(false, options, strict, r_out, u_out, result));
+  bool solve(const SolverOptions& options, double* r_out, double* u_out, SolveResult& result) {
+    return solveBy(rows == 3, options, r_out, u_out, result) ||
+           (rows == 3 && solveBy(false, options, r_out, u_out, result));
   }
 
  private:
-  bool solveBy(bool blocks, const SolverOptions& options, bool strict, double* r_out, double* u_out,
-               SolveResult& result) {
+  bool solveBy(bool blocks, const SolverOptions& options, double* r_out, double* u_out, SolveResult& result) {
     copy<m>(r_out, r_);
     const ContactError at_start = evaluate();
     const double start = at_start.residual;
     const bool is_close = start <= options.tolerance;
     result = {SolveMethod::kWarmStart, 0, start, at_start.speed, start, true};
     if (squeezes(r_out)) return false;
-    if (is_close && !(strict && start > exactResidual(options.tolerance, speed_))) {
+    if (is_close && !(strict_ && start > exactResidual(options.tolerance, noise_, speed_))) {
       copy<m>(u_, u_out);
       return true;
     }
@@ -309,7 +309,8 @@ class SmallProblem {
   }
 
   const double* mu_;
-  const double speed_;
+  const double speed_, noise_;
+  const bool strict_;
   double w_[count];
   alignas(16) double W_[m][m];  // [1/kg]
   alignas(16) double J_[m][m];
@@ -318,7 +319,7 @@ class SmallProblem {
 
 template <int count, int rows>
 bool solveAs(const ContactProblem& problem, const SolverOptions& options, double* r, double* u, SolveResult& result) {
-  return SmallProblem<count, rows>(problem).solve(options, problem.strict, r, u, result);
+  return SmallProblem<count, rows>(problem).solve(options, r, u, result);
 }
 
 }  // namespace

@@ -43,11 +43,13 @@ void changeBias(double h, double offset_rate, double change, int k, Contact& c) 
 
 class BiasFit {
  public:
-  BiasFit(PushingBy pushing, const ContactProblem& problem, const double* r, std::span<const int> order,
-          std::vector<Contact>& contacts, SolverScratch& memory)
+  // asked: of each row [m/s]; null for the biases
+  BiasFit(PushingBy pushing, const ContactProblem& problem, const double* r, const double* asked,
+          std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory)
       : pushing_(pushing),
         problem_(problem),
         r_(r),
+        asked_(asked),
         order_(order),
         contacts_(contacts),
         memory_(memory),
@@ -62,7 +64,7 @@ class BiasFit {
         gradient_(memory.gradient.data()),
         response_(memory.way.data()) {}
 
-  // How much the biases ask for [m/s].
+  // How much is asked for [m/s].
   double gather() {
     double largest = 0;
     for (int i = 0; i < problem_.contactCount(); ++i) {
@@ -75,7 +77,7 @@ class BiasFit {
       const bool is_stuck = sticks(c, i);
       for (int k = 0; k < rows; ++k) {
         const double w = weight_[first + k] = k == kNormalRow ? kNormalRowWeight : is_stuck ? 1 : 0;
-        b_[first + k] = w * unitOfRow(c, k) * c.bias_C[k];
+        b_[first + k] = w * (asked_ ? asked_[first + k] : unitOfRow(c, k) * c.bias_C[k]);
         largest = std::max(largest, std::abs(b_[first + k]));
       }
     }
@@ -134,7 +136,7 @@ class BiasFit {
     }
   }
 
-  // Largest gap speed that no motion gives [m/s].
+  // Largest speed that no motion gives [m/s].
  public:
   double largestLeft() const {
     double largest = 0;
@@ -205,13 +207,30 @@ class BiasFit {
 
   const PushingBy pushing_;
   const ContactProblem& problem_;
-  const double* r_;
+  const double *r_, *asked_;
   std::span<const int> order_;
   std::vector<Contact>& contacts_;
   SolverScratch& memory_;
   int rows_, size_, most_steps_;
   double *b_, *image_, *weight_, *direction_, *gradient_, *response_;
 };
+
+// By how much contacts on what turns may contradict each other: a tick's chord is shorter than its arc [m/s].
+double chordError(double h, const Motion& m, const Vec3& arm_W) {
+  constexpr double kChord = 1.0 / 24;  // sin(x / 2) = x / 2 (1 - x^2 / 24 + ..)
+  return kChord * h * h * m.w_W.squaredNorm() * (m.v_W + m.w_W.cross(arm_W)).norm();
+}
+
+double largestChordError(double h, std::span<const int> order, const std::vector<Contact>& contacts) {
+  double largest = 0;
+  for (const int i : order) {
+    const Contact& c = contacts[static_cast<std::size_t>(i)];
+    if (c.a.kind == SideKind::kJoint) continue;
+    largest =
+        std::max({largest, chordError(h, c.mover_a->start, c.arm_a_W), chordError(h, c.mover_b->start, c.arm_b_W)});
+  }
+  return largest;
+}
 
 }  // namespace
 
@@ -222,13 +241,25 @@ bool mayContradict(const ContactProblem& problem) {
 
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
                      double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
-  BiasFit fit(pushing, problem, r, order, contacts, memory);
+  BiasFit fit(pushing, problem, r, nullptr, order, contacts, memory);
   if (memory.operations_left < 0) return;
   const double asked = fit.gather();
   if (asked <= kNegligible) return;
   fit.minimise();
   if (fit.largestLeft() <= kConsistent * asked) return;
   fit.apply(h, offset_rate, q);
+}
+
+bool fitToTurn(double h, double offset_rate, const ContactProblem& problem, const double* r, const double* u, double* q,
+               std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
+  const double most = largestChordError(h, order, contacts);
+  if (memory.operations_left < 0 || most <= kNegligible) return false;
+  BiasFit fit(PushingBy::kLastTick, problem, r, u, order, contacts, memory);
+  fit.gather();
+  fit.minimise();
+  if (!(fit.largestLeft() <= most)) return false;
+  fit.apply(h, offset_rate, q);
+  return true;
 }
 
 void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q,

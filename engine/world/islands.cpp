@@ -271,6 +271,7 @@ void gather(const WorldModel& model, WorldScratch& scratch) {
     } else {
       copyRows(scratch, static_cast<int>(k), s.rows, island, s);
     }
+    island.holds_trees = holdsTrees(s, island);
     island.has_many_sides = hasManySides(s, island);
     if (island.has_many_sides) {
       fillManySides(model, scratch, static_cast<int>(k), island, s);
@@ -286,10 +287,10 @@ void gather(const WorldModel& model, WorldScratch& scratch) {
 // in a tick, kept, would turn it round and move it off.
 // Of links the number never grows while warm starts stay within the tolerance: drives push by the round-off of their
 // coordinates, so that no exact one lasts, and at most so many ticks take iterations for that alone.
-int nextSettling(const Island& island, bool on_pads, bool on_links, double tolerance) {
-  if (!(island.result.start <= tolerance)) return on_pads || on_links ? kRingingTicks : kSettlingTicks;
+int nextSettling(const Island& island, bool on_pads, double tolerance) {
+  if (!(island.result.start <= tolerance)) return on_pads || island.holds_trees ? kRingingTicks : kSettlingTicks;
   if (island.result.method != SolveMethod::kWarmStart) return island.settling - 1;
-  if (on_links) return std::min(island.settling, kSettlingTicks);
+  if (island.holds_trees) return std::min(island.settling, kSettlingTicks);
   return island.settling > 0 ? kSettlingTicks : 0;
 }
 
@@ -301,12 +302,14 @@ bool isHeldByPads(const IslandScratch& s, const Island& island, const WorldScrat
                      [&](int i) { return scratch.contacts[i].a.kind == SideKind::kPoint; });
 }
 
-double restSpeed(const Island& island, const SolverOptions& options) {
-  return island.contacts <= kFewContacts ? kRestSpeed : std::max(kRestSpeed, 2 * restErrorOf(options));
+double restSpeed(const Island& island, const WorldOptions& options) {
+  const double on_links = island.holds_trees ? linkNoise(options.h) : 0;
+  const double of_many = island.contacts > kFewContacts ? 2 * restErrorOf(options.solver) : 0;
+  return std::max({kRestSpeed, on_links, of_many});
 }
 
-void scatter(const IslandScratch& s, const Island& island, const SolverOptions& options, WorldScratch& scratch) {
-  const int settling = nextSettling(island, isHeldByPads(s, island, scratch), holdsTrees(s, island), options.tolerance);
+void scatter(const IslandScratch& s, const Island& island, const WorldOptions& options, WorldScratch& scratch) {
+  const int settling = nextSettling(island, isHeldByPads(s, island, scratch), options.solver.tolerance);
   const double rest_speed = island.result.method == SolveMethod::kWarmStart ? restSpeed(island, options) : 0;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   Contact* const contacts = scratch.contacts.data();
@@ -372,7 +375,7 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
   }
   std::int64_t operations = 0;
   for (const Island& island : s.islands) {
-    scatter(s, island, model.options.solver, scratch);
+    scatter(s, island, model.options, scratch);
     addResult(island.result, scratch.solve);
     operations += island.operations;
     scratch.hit_operations += island.hit_operations;

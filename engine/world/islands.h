@@ -23,6 +23,7 @@ struct Island {
   int settling = 0;             // the most of its contacts (state.h)
   bool calm = true;             // all that moves of it is as good as at rest
   bool has_many_sides = false;  // its contacts' are in many_sides
+  bool holds_trees = false;     // contacts of it push on trees, whose drives come to rest over many ticks
   // Filled by solveIslands, without a value before.
   // The solver's view: of one among several islands in IslandScratch, of the only
   // one the world's own (scratch.h), uncopied.

@@ -11,6 +11,7 @@
 #include "pincer/engine/world/budget.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/island_bias.h"
+#include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/scratch.h"
 #include "pincer/engine/world/tree_sides.h"
 #include "pincer/engine/world/wedge.h"
@@ -31,7 +32,7 @@ class IslandSolve {
         scratch_(scratch),
         island_(scratch.islands.islands[k]),
         memory_(*scratch.islands.solvers[thread]),
-        problem_(problemOf(island_, scratch.islands)),
+        problem_(problemOf(model.options.h, island_, scratch.islands)),
         order_(scratch.islands.order.data() + island_.place, static_cast<std::size_t>(island_.contacts)),
         is_loop_(mayContradict(problem_)),
         tick_(model.options.h) {}
@@ -73,13 +74,13 @@ class IslandSolve {
     constexpr int kUnhurried = 3, kMostHaste = 4;  // solves; doublings, to a sixteenth of the work
     return 1 << std::clamp(solves - kUnhurried, 0, kMostHaste);
   }
-  static ContactProblem problemOf(Island& island, IslandScratch& s) {
+  static ContactProblem problemOf(double h, Island& island, IslandScratch& s) {
     const auto n = static_cast<std::size_t>(island.contacts);
     const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.place)].data(), 2 * n);
     ContactProblem problem{
         {island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
         island.settling > 0,       island.calm};
-    problem.on_long_arms = island.has_many_sides;
+    if (island.holds_trees) problem.noise = linkNoise(h);
     if (island.has_many_sides) takeManySides(island, s, problem);
     return problem;
   }
@@ -87,7 +88,7 @@ class IslandSolve {
   // The gaps of a loop of bodies are fitted to the contacts that pushed in the last tick, once more to the impulses
   // found if that fails; then contacts give way.
   void solveLoop() {
-    fit(PushingBy::kLastTick);
+    if (!fitToTurnOfTrees()) fit(PushingBy::kLastTick);
     SolverOptions giving = options_;
     giving.largest_give = kLargestGive;
     if (island_.contacts > kFewContacts) return solve(giving);
@@ -130,8 +131,8 @@ class IslandSolve {
   bool isInexact() const {
     const SolveResult& found = island_.result;
     return problem_.strict && island_.contacts <= kFewContacts && found.converged && found.give == 0 &&
-           scratch_.h > 0 && holdsTrees(scratch_.islands, island_) &&
-           found.residual > exactResidual(options_.tolerance, referenceSpeed(problem_));
+           scratch_.h > 0 && island_.holds_trees &&
+           found.residual > exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_));
   }
   void polish() {
     const SolveResult first = island_.result;
@@ -145,6 +146,15 @@ class IslandSolve {
   void fit(PushingBy pushing) {
     fitIslandBiases(pushing, scratch_.h, offsetRate(), problem_, island_.r, island_.q, order_, scratch_.contacts,
                     memory_);
+  }
+
+  bool fitToTurnOfTrees() {
+    if (!island_.holds_trees) return false;
+    projectOntoCones(problem_, island_.r);
+    weighContacts(problem_, memory_);
+    errorOf(problem_, island_.r, memory_, island_.u);
+    return fitToTurn(scratch_.h, offsetRate(), problem_, island_.r, island_.u, island_.q, order_, scratch_.contacts,
+                     memory_);
   }
 
   void solve(const SolverOptions& options) {

@@ -27,7 +27,7 @@ inline int parentOf(const IslandScratch& s, int mover) {
                                                                        : -1;
 }
 
-// True if contacts of the island push on trees, whose drives come to rest over many ticks.
+// Fills Island::holds_trees.
 bool holdsTrees(const IslandScratch& s, const Island& island);
 
 // A's block of a contact's side and one of the movers of that.
