@@ -34,10 +34,11 @@ struct ContactMemory {
   Vec3 t1_W = Vec3::UnitX();                // first tangent of C, so that r keeps its meaning when n turns
   Vec3 n_W = Vec3::UnitZ();
   Vec3 arm_a_W = Vec3::Zero(), arm_b_W = Vec3::Zero();  // contact point from the two centres [m]
-  ContactVector offset_C =
-      ContactVector::Zero();  // how far a has moved past b since they stuck: along t1, t2 [m], -, about n, t1, t2 [rad]
-  bool active = false;        // pushed in the last tick
-  bool anchored = false;      // offset_C holds: it sticks, or did a moment ago, or lies in a face that does
+  // How far a has moved past b since they stuck: along t1, t2 [m]; the overlap that friction holds shut, at most 0 [m];
+  // about n, t1, t2 [rad].
+  ContactVector offset_C = ContactVector::Zero();
+  bool active = false;    // pushed in the last tick
+  bool anchored = false;  // offset_C holds: it sticks, or did a moment ago, or lies in a face that does
   bool sliding = false;
   bool closing = false;  // it closed in the last tick
   // for which it has been open, by so little that it may close again at once; kOpenTicks: no longer

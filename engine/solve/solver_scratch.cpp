@@ -46,7 +46,9 @@ SolverScratch::SolverScratch(const SolverSize& its) : lu(its.movers, its.blocks,
   const auto n = static_cast<std::size_t>(its.contacts), m = kMaxContactRows * n;
   const std::size_t size = kMoverFreedoms * static_cast<std::size_t>(its.movers);
   for (std::vector<double>* per_contact : {&weight, &frozen}) per_contact->resize(n);
-  for (std::vector<double>* per_row : {&r, &u, &centre, &best_r, &best_u, &give, &change, &work}) per_row->resize(m);
+  for (std::vector<double>* per_row :
+       {&r, &u, &centre, &best_r, &best_u, &give, &change, &work, &pushes, &kept_r, &kept_u})
+    per_row->resize(m);
   for (std::vector<double>* per_mover : {&y, &direction, &gradient, &way}) per_mover->resize(size);
   local.resize(2 * (kMaxContactRows * m + n));
   round.resize(n);

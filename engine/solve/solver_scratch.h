@@ -52,6 +52,8 @@ struct SolverScratch {
   // Per row: impulses and velocities of the iterate, the rounds' centre r_c, the best iterate, what
   // contacts gave way by, and what methods need.
   std::vector<double> r, u, centre, best_r, best_u, give, change, work;
+  // Per row: biases that were left out of q [m/s], from torsion on [rad/s]; the answer before that.
+  std::vector<double> pushes, kept_r, kept_u;
   // Per mover: y = A^T r, a direction, a gradient, and what methods need.
   std::vector<double> y, direction, gradient, way;
   std::vector<double> local;        // sweeps.h

@@ -71,7 +71,7 @@ double normalBias(const WorldModel& model, const Rates& rates, const WorldScratc
     const double turn = turnOfNormal(rates, c, *memory);
     // A contact that landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
     if (!memory->closing || rollsOn(u_n, turn))
-      return std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turn;
+      return std::max(rates.normal * (c.phi - c.offset_C[kNormalRow]), -largestCorrection(model, c)) + turn;
   }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;
   c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick

@@ -39,7 +39,7 @@ void remember(const Contact& c, double h, double hovering, ContactMemory& m) {
     relativeVelocity(c, c.mover_a->end, c.mover_b->end, rows, v_end_C);
     for (int k = 0; k < rows; ++k) {
       const double v_mean = c.closing ? v_end_C[k] : 0.5 * (c.v_start_C[k] + v_end_C[k]);
-      m.offset_C[k] = k == kNormalRow ? 0 : c.offset_C[k] + h * v_mean;
+      m.offset_C[k] = c.offset_C[k] + (k == kNormalRow ? 0 : h * v_mean);
     }
   });
 }

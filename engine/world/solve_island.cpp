@@ -11,6 +11,7 @@
 #include "pincer/engine/world/budget.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/island_bias.h"
+#include "pincer/engine/world/push_out.h"
 #include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/scratch.h"
 #include "pincer/engine/world/tree_sides.h"
@@ -113,17 +114,40 @@ class IslandSolve {
     solveAgain(giving);
   }
 
-  // One contact that only stops what closes has an answer: it sticks, if nothing else. Several may contradict each
-  // other all the same, and overlap until something pushes them apart.
   bool pushesInVain() const {
-    return island_.contacts == 1 && scratch_.h > 0 && !island_.result.converged && memory_.operations_left >= 0;
+    return island_.contacts <= kFewContacts && scratch_.h > 0 && !island_.result.converged &&
+           memory_.operations_left >= 0 && (island_.contacts == 1 || pushesLittle());
+  }
+  bool pushesLittle() const {
+    const auto is_little = [&](int i) { return isLittle(scratch_.contacts[static_cast<std::size_t>(i)].phi); };
+    return std::all_of(order_.begin(), order_.end(), is_little);
+  }
+  // What is deeper is pushed out, whatever holds it (push_out.h).
+  bool isLittle(double phi) const { return phi >= -kDeepSpeed / kNormalCorrection * tick_; }
+  bool pressesWhereItOverlaps() const {
+    for (int n = 0; n < island_.contacts; ++n) {
+      const auto normal = static_cast<std::size_t>(problem_.firstRow(n) + kNormalRow);
+      if (memory_.pushes[normal] < 0 && !(island_.r[normal] > 0)) return false;
+    }
+    return true;
   }
 
-  // A link that grazes another one over an edge is held there by friction whatever pushes it off.
+  // What friction jams, or holds where it grazes an edge, has an answer if contacts only stop what closes: the overlap
+  // stays for as long as it sticks. Walls that close have none: there pushes keep the thing in the middle.
   void solveWithoutPushes() {
+    const SolveResult pushed = island_.result;
+    std::copy(island_.r, island_.r + island_.rows, memory_.kept_r.begin());
+    std::copy(island_.u, island_.u + island_.rows, memory_.kept_u.begin());
     dropPushes();
     std::fill(island_.r, island_.r + island_.rows, 0.0);
     solveAgain(options_);
+    if (island_.result.converged && (island_.contacts == 1 || pressesWhereItOverlaps())) return keepOverlaps();
+    pushAgain();
+    std::copy(memory_.kept_r.begin(), memory_.kept_r.begin() + island_.rows, island_.r);
+    std::copy(memory_.kept_u.begin(), memory_.kept_u.begin() + island_.rows, island_.u);
+    const int iterations = island_.result.iterations;
+    island_.result = pushed;
+    island_.result.iterations = iterations;
   }
 
   // Strictness asks for more than was found: where friction is used up at no slip, Newton's method for few contacts
@@ -181,15 +205,32 @@ class IslandSolve {
 
   // Gaps and offsets are put right in the ticks to come.
   void dropPushes() {
+    forEachRow([&](Contact& c, int k, int row) {
+      const bool is_push = k != kNormalRow || c.bias_C[k] < 0;
+      memory_.pushes[static_cast<std::size_t>(row)] = is_push ? c.bias_C[k] : 0;
+      addBias(is_push ? -c.bias_C[k] : 0, k, row, c);
+    });
+  }
+  void pushAgain() {
+    forEachRow([&](Contact& c, int k, int row) { addBias(memory_.pushes[static_cast<std::size_t>(row)], k, row, c); });
+  }
+  void keepOverlaps() {
+    forEachRow([&](Contact& c, int k, int row) {
+      if (k != kNormalRow && c.stuck)
+        c.offset_C[k] = -0.5 * scratch_.h * c.v_start_C[k];
+      else if (k == kNormalRow && memory_.pushes[static_cast<std::size_t>(row)] < 0 && isLittle(c.phi))
+        c.offset_C[k] = std::min(c.phi, 0.0);
+    });
+  }
+  template <class Act>
+  void forEachRow(const Act& act) {
     for (int n = 0; n < island_.contacts; ++n) {
-      Contact& c = scratch_.contacts[order_[n]];
-      double* const q = island_.q + problem_.firstRow(n);
-      for (int k = 0; k < problem_.rows(n); ++k) {
-        if (k == kNormalRow && !(c.bias_C[k] < 0)) continue;
-        q[k] -= (k >= kTorsionRow ? radiusOf(c, k) : 1) * c.bias_C[k];
-        c.bias_C[k] = 0;
-      }
+      for (int k = 0; k < problem_.rows(n); ++k) act(scratch_.contacts[order_[n]], k, problem_.firstRow(n) + k);
     }
+  }
+  void addBias(double change, int k, int row, Contact& c) {
+    island_.q[row] += (k >= kTorsionRow ? radiusOf(c, k) : 1) * change;
+    c.bias_C[k] += change;
   }
 
   // Share of the budget kept for stopOnly: support doesn't depend on it.
