@@ -124,6 +124,11 @@ void tighten(const Probes::Error& measured, double error, int round, double& all
   for (const std::size_t vertex : measured.missed) stays[vertex] = true;
 }
 
+// True if the mesh means the same read again without options.
+bool speaksForItself(const SimplifyOptions& options) {
+  return options.use_file_normals && options.crease_angle == SimplifyOptions().crease_angle;
+}
+
 }  // namespace
 
 SimplifiedMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options) {
@@ -138,6 +143,7 @@ SimplifiedMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options
     if (options.error > 0) decimation.reduceTo(options.triangles, allowed);
     if (!(options.error > 0)) reduceTo(options.triangles, decimation, size);
     SimplifiedMesh result{decimation.mesh()};
+    if (result.mesh.triangles.size() == mesh.triangles.size() && speaksForItself(options)) return {mesh};
     const Probes::Error error = probes.errorOf(result.mesh, options.error > 0 ? options.error : kInfinity);
     result.error = error.greatest;
     result.typical = error.typical;

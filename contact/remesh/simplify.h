@@ -29,7 +29,8 @@ struct SimplifiedMesh {
 // The mesh must be well-formed and manifold (mesh_report.h). Throws InputError for options out of range. The
 // error that is allowed is kept to at all probes: where one misses, its vertex stays, or, where many do, less is
 // allowed, and the whole is done again, eight times at most. Not kept to where the smooth surface folds over itself,
-// for which no normals stand; the result says how large the error is in truth.
+// for which no normals stand; the result says how large the error is in truth. Where no vertex can go, and neither
+// options nor normals are needed to know what is sharp, the result is the input, without an error.
 SimplifiedMesh simplify(const TriangleMesh& mesh, const SimplifyOptions& options);
 
 // Each triangle as four, with new vertices in the middle of the smooth surface's edges and its
