@@ -5,8 +5,9 @@
 //   p = -1 where the fan's edges are of about one length (up to 2 : 1), +1 where they
 //   aren't (from 6 : 1), between in the logarithm
 //
-// Triangles of the fan that lie in one plane count as one facet, with the outer two of their edges: a quad weighs the
-// same whichever way its diagonal runs. Edge i of a triangle goes from its corner i to corner (i + 1) mod 3. A fan is
+// Triangles of the fan that lie in one plane count as one facet, with the outer two of their edges, or as two, cut
+// along the squarest edge, where they take half the way around: a quad weighs the same whichever way its diagonal
+// runs. Edge i of a triangle goes from its corner i to corner (i + 1) mod 3. A fan is
 // the triangles around a vertex between two sharp edges, so a vertex on a crease has several normals. Where the file
 // has usable normals their mean replaces that sum, and an edge is sharp where the two sides' normals differ at an end
 // by more than kSameNormal; elsewhere, where the file has smoothing groups, it is sharp unless both sides are in the

@@ -159,22 +159,30 @@ class CornerNormalFinder {
     return weighted;
   }
 
-  // Of the plane that begins, counter-clockwise around the vertex, at corner c; zero, with
-  // nothing done, if it takes half the way around.
+  // Of the plane that begins, counter-clockwise around the vertex, at corner c. One that takes half the way around is
+  // two facets, cut along its squarest edge; zero, with nothing done, if it takes more.
   Vec3 planeFrom(std::size_t c, const Fans& fans, const Sharp& sharp, std::vector<bool>& done) const {
-    constexpr double kHalfWay = -0.9;  // cosine
-    const Vec3 e = side(c / 3, c % 3, c % 3 + 1);
+    constexpr double kHalfWay = -0.9, kFarthest = 2.1;  // cosine; counted in right angles, roughly
+    const Fan& fan = fans.fan[fans.of_corner[c]];
+    const Vec3 e = side(c / 3, c % 3, c % 3 + 1), out = e.normalized();
     std::vector<std::size_t> corners = {c};
-    double turn = 0;  // counted in right angles, roughly
+    Vec3 squarest = Vec3::Zero();
+    double turn = 0, least = 1;
     for (std::size_t t = c / 3, i = c % 3;;) {
       const Vec3 first = direction(t, i, i + 1), last = direction(t, i, i + 2);
+      if (std::abs(out.dot(first)) < least) {
+        least = std::abs(out.dot(first));
+        squarest = side(t, i, i + 1);
+      }
       turn += 1 - first.dot(last);
+      if (turn > kFarthest) return Vec3::Zero();
       const std::size_t edge = (i + 2) % 3;
-      if (!isFlatAcross(t, edge, sharp) || turn > 2) {
+      if (!isFlatAcross(t, edge, sharp)) {
         const Vec3 f = side(t, i, i + 2);
-        if (turn > 2 || e.normalized().dot(last) < kHalfWay) return Vec3::Zero();
         for (const std::size_t each : corners) done[each] = true;
-        return weightedNormal(e, f, fans.fan[fans.of_corner[c]]);
+        return out.dot(last) < kHalfWay && least < 1
+                   ? weightedNormal(e, squarest, fan) + weightedNormal(squarest, f, fan)
+                   : weightedNormal(e, f, fan);
       }
       const Neighbour next = neighbours_[t][edge];
       t = static_cast<std::size_t>(next.triangle);

@@ -44,11 +44,15 @@ bool folds(const Patch& patch) {
 
 }  // namespace
 
+// Where one end outweighs the other by w the middle normal is (w + 1/w) / 2 long, and at the lighter
+// end the normal turns w times as fast.
 double concaveCurvature(const Patch& patch, int edge) {
+  constexpr double kEven = 1e-7;  // of the length's square
   const auto p = edgeCurve(patch, edge);
   const auto n = edgeNormals(patch, edge);
   const Vec3 d = p[3] - p[0];
-  return -(n[2] - n[0]).dot(d) / d.squaredNorm();
+  const double mean = -(n[2] - n[0]).dot(d) / d.squaredNorm(), length2 = n[1].squaredNorm();
+  return length2 > 1 + kEven ? mean * (std::sqrt(length2) + std::sqrt(length2 - 1)) : mean;
 }
 
 void NetInspector::see(std::int32_t triangle, const Patch& patch) {

@@ -134,6 +134,48 @@ bool setCentreByMedians(Patch& p, const Middles& middles) {
   return p.b111.allFinite();
 }
 
+// Of an edge or median whose ends' normals weigh 1 : w, how much less it is bent. (On a cone its middle is then exact.)
+double flattening(double w) { return 4 * w / ((1 + w) * (1 + w)); }
+
+// The first end of the edge outweighs the second by `excess`.
+void weighEdge(Patch& p, int i, double excess) {
+  const auto curve = edgeCurve(p, i);
+  const auto normals = edgeNormals(p, i);
+  const double w = 1 + std::abs(excess), more = 0.5 * (w - 1), less = 0.5 * (1 / w - 1);
+  const double first = excess > 0 ? more : less, second = excess > 0 ? less : more, bend = flattening(w);
+  const Vec3 third = (curve[3] - curve[0]) / 3;
+  setEdge(p, i, curve[0] + third + bend * (curve[1] - curve[0] - third),
+          curve[3] - third + bend * (curve[2] - curve[3] + third),
+          normals[1] + (first * normals[0] + second * normals[2]));
+}
+
+// First over second end, from what is kept of an edge.
+double ratioOf(float excess) {
+  return excess < 0 ? 1 / (1 - static_cast<double>(excess)) : 1 + static_cast<double>(excess);
+}
+
+// With the corners' weights as the triangle's edges have them.
+[[gnu::noinline]] bool setCentreByMedians(Patch& p, const std::array<float, 3>& excess) {
+  const std::array<double, 3> corner = {1, 1 / ratioOf(excess[0]), ratioOf(excess[2])};
+  const std::array<Vec3, 3> P = {p.b300, p.b030, p.b003}, n = {p.n200, p.n020, p.n002};
+  Vec3 bend = Vec3::Zero(), corners = P[0] + P[1] + P[2];
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double across = 0.5 * (corner[(i + 1) % 3] + corner[(i + 2) % 3]);
+    bend += flattening(across / corner[i]) * bendOfMedian(P[i], n[i], middleOf(p, static_cast<int>((i + 1) % 3)));
+  }
+  const Vec3 handles = p.b210 + p.b120 + p.b021 + p.b012 + p.b102 + p.b201;
+  p.b111 = (14 * corners - 3 * handles + 8 * bend) / 24;
+  return p.b111.allFinite();
+}
+
+bool areEven(const std::array<float, 3>& excess) { return excess[0] == 0 && excess[1] == 0 && excess[2] == 0; }
+
+[[gnu::noinline]] void weighEdges(Patch& p, const std::array<float, 3>& excess) {
+  for (int i = 0; i < 3; ++i) {
+    if (excess[static_cast<std::size_t>(i)] != 0) weighEdge(p, i, excess[static_cast<std::size_t>(i)]);
+  }
+}
+
 // FNV-1a over what the patches depend on.
 class Fingerprint {
  public:
@@ -241,6 +283,7 @@ SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_nor
     const CornerNormals corners = findCornerNormals(mesh_, neighbours, crease_angle, use_file_normals);
     NormalNumbers numbers(mesh_, corners);
     normals_ = std::move(numbers.distinct);
+    if (variant == SurfaceVariant::smooth) weights_ = findEdgeWeights(mesh_, neighbours, corners);
     PINCER_ASSERT(std::all_of(normals_.begin(), normals_.end(), [](const Vec3& n) { return isUnit(n); }));
     for (std::size_t t = 0; t < links_.size(); ++t) links_[t].normals = numbers.numbers[t];
   }
@@ -264,6 +307,9 @@ SurfaceNet::SurfaceNet(TriangleMesh mesh, double crease_angle, bool use_file_nor
   for (const Vec3& n : normals_) fingerprint.add(n);
   for (const auto& triangle : mesh_.triangles) fingerprint.add(triangle);
   for (const Links& links : links_) fingerprint.add(links.normals);
+  for (const auto& weights : weights_) {
+    for (const float w : weights) fingerprint.add(std::bit_cast<std::uint32_t>(w));
+  }
   fingerprint_ = fingerprint.value();
 }
 
@@ -295,15 +341,20 @@ bool SurfaceNet::haveOtherNormals(std::int32_t triangle, int edge) const {
   p.n020 = normal(triangle, 1);
   p.n002 = normal(triangle, 2);
   Middles middles = setSmoothEdges(p);
+  const bool is_weighted = !weights_.empty() && !areEven(weights_[at(triangle)]);
   if (is_flat_) {
     cell.sharp = {true, true, true};
     setStraightEdges(p);
   } else {
     cell.sharp = {isSharp(triangle, 0), isSharp(triangle, 1), isSharp(triangle, 2)};
+    if (is_weighted) weighEdges(p, weights_[at(triangle)]);
     if (cell.sharp[0] || cell.sharp[1] || cell.sharp[2]) middles = setSharpEdges(*this, triangle, cell);
     if (variant_ == SurfaceVariant::smooth_published) setPublishedEdges(p);
   }
-  if (variant_ != SurfaceVariant::smooth || !setCentreByMedians(p, middles)) setCentre(p);
+  const bool has_medians =
+      variant_ == SurfaceVariant::smooth &&
+      (is_weighted ? setCentreByMedians(p, weights_[at(triangle)]) : setCentreByMedians(p, middles));
+  if (!has_medians) setCentre(p);
 }
 
 inline void SurfaceNet::fetchAround(std::int32_t triangle) const {
@@ -332,7 +383,7 @@ void SurfaceNet::fill(std::int32_t triangle, PatchCache::Place& place) const {
 }
 
 std::size_t SurfaceNet::memoryBytes() const {
-  return bytesOf(mesh_.vertices) + bytesOf(mesh_.triangles) + bytesOf(links_) + bytesOf(normals_);
+  return bytesOf(mesh_.vertices) + bytesOf(mesh_.triangles) + bytesOf(links_) + bytesOf(weights_) + bytesOf(normals_);
 }
 
 }  // namespace pincer::contact

@@ -1,10 +1,13 @@
 // surface_net: the patches of a mesh and how they hang together.
 //
-// Kept are the mesh, its neighbours and its corner normals, about 60 bytes per triangle; a patch is built from them
+// Kept are the mesh, its neighbours and its corner normals, about 60 bytes per triangle, 12 more where some normals
+// outweigh others (mesh/edge_weights.h); a patch is built from them
 // when it is first touched. Of the shading variants
 //   smooth            has cubic edges that both sides share (edge_cubic.h), and a centre by its medians, of the same
 //                     cubics:  b_111 = (27 m - sum of corners - 3 sum of handles) / 6,
-//                     m  mean of the medians' places after 2/3 of their way [m]
+//                     m  mean of the medians' places after 2/3 of their way [m];
+//                     where an edge's ends weigh w : 1, its middle normal is n_110 + ((w - 1) n0 + (1/w - 1) n1) / 2,
+//                     so that N ~ (1 - s) w n0 + s n1, and its bend, as a median's, is 4 w / (1 + w)^2 of an even one's
 //   smooth_published  each side's own, V = P + (d - (d.N) N) / 3, d to the other end,
 //                     b_111 = E + (E - V) / 2 of the handles' mean E and the corners' V (Vlachos et al., eq. 3)
 //   facet and force   have flat triangles with their own normals, which aren't kept; `force` keeps the corner normals
@@ -17,6 +20,7 @@
 
 #include "pincer/contact/assert.h"
 #include "pincer/contact/mesh/connectivity.h"
+#include "pincer/contact/mesh/edge_weights.h"
 #include "pincer/contact/surface/patch_cache.h"
 #include "pincer/contact/surface/surface_cell.h"
 #include "pincer/contact/surface_contact.h"
@@ -104,6 +108,7 @@ class SurfaceNet {
   };
   std::vector<Links> links_;
   std::vector<Vec3> normals_;  // those that differ; a fan shares one
+  EdgeWeights weights_;        // of `smooth` only
   std::uint64_t fingerprint_ = 0;
   double length_ = 0;
 };
@@ -130,8 +135,8 @@ bool SurfaceNet::visitCorners(const CellCorner& start, Visit&& visit) const {
   }
 }
 
-// Curvature along an edge of a patch [1/m], positive where concave:
-//   kappa = -(n1 - n0) . (p1 - p0) / |p1 - p0|^2
+// Curvature along an edge of a patch [1/m], positive where concave, at the lighter end if one outweighs the other:
+//   kappa = -w (n1 - n0) . (p1 - p0) / |p1 - p0|^2
 double concaveCurvature(const Patch& patch, int edge);
 
 // Figures of a surface from one look at every patch.

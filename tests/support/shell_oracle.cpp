@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "pincer/contact/mesh/edge_weights.h"
+
 namespace pincer::tests {
 namespace {
 
@@ -33,13 +35,15 @@ Monomial monomial(const std::array<int, 3>& e, double u, double v) {
   return {power(w, e[0]) * power(u, e[1]) * power(v, e[2]), du - dw, dv - dw};
 }
 
-// contact.md: Walton and Meek.
-std::array<Vec3, 2> smoothHandles(const Vec3& P0, const Vec3& P1, const Vec3& N0, const Vec3& N1) {
+// contact.md: Walton and Meek; bent by 4 w / (1 + w)^2 of it where N0 outweighs N1 by w.
+std::array<Vec3, 2> smoothHandles(const Vec3& P0, const Vec3& P1, const Vec3& N0, const Vec3& N1, double w) {
   const double d = (P1 - P0).norm();
   const Vec3 g = unit(P1 - P0);
   const double a = N0.dot(N1), a0 = N0.dot(g), a1 = N1.dot(g);
   const double rho = 6 * (2 * a0 + a * a1) / (4 - a * a), sigma = 6 * (2 * a1 + a * a0) / (4 - a * a);
-  return {P0 + d * (6 * g - 2 * rho * N0 + sigma * N1) / 18, P1 - d * (6 * g + rho * N0 - 2 * sigma * N1) / 18};
+  const double bend = 4 * w / ((1 + w) * (1 + w));
+  return {P0 + d * (6 * g + bend * (-2 * rho * N0 + sigma * N1)) / 18,
+          P1 - d * (6 * g + bend * (rho * N0 - 2 * sigma * N1)) / 18};
 }
 
 // contact.md: both sides of a crease share T = nA x nB; at its smooth end the tangent
@@ -112,6 +116,7 @@ ShellOracle::ShellOracle(const TriangleMesh& mesh, double crease_angle, bool use
 }
 
 void ShellOracle::buildFaces(const TriangleMesh& mesh) {
+  const contact::EdgeWeights excess = contact::findEdgeWeights(mesh, neighbours_, normals_);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     std::array<Vec3, 3> p, n, middles;
     std::array<std::array<Vec3, 2>, 3> handles;  // per edge, from its first corner on
@@ -119,6 +124,11 @@ void ShellOracle::buildFaces(const TriangleMesh& mesh) {
       p[i] = mesh.vertices[at(mesh.triangles[t][i])];
       n[i] = normals_.normals[t][i];
       corners_[at(mesh.triangles[t][i])].push_back({static_cast<int>(t), static_cast<int>(i)});
+    }
+    std::array<double, 3> weight = {1, 1, 1};  // of each edge's first end over its second
+    for (std::size_t i = 0; i < 3 && !excess.empty(); ++i) {
+      const double e = static_cast<double>(excess[t][i]);
+      weight[i] = e < 0 ? 1 / (1 - e) : 1 + e;
     }
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t k = (i + 1) % 3;
@@ -132,11 +142,11 @@ void ShellOracle::buildFaces(const TriangleMesh& mesh) {
       const double d = (p[k] - p[i]).norm();
       const Vec3 g = (p[k] - p[i]) / d;
       if (smooth) {
-        handles[i] = smoothHandles(p[i], p[k], n[i], n[k]);
+        handles[i] = smoothHandles(p[i], p[k], n[i], n[k], weight[i]);
       } else {
         handles[i] = {creaseHandle(p[i], n[i], beyond[0], g, d), creaseHandle(p[k], n[k], beyond[1], -g, d)};
       }
-      middles[i] = middleNormal(p[i], p[k], n[i], n[k]);
+      middles[i] = middleNormal(p[i], p[k], n[i], n[k]) + 0.5 * ((weight[i] - 1) * n[i] + (1 / weight[i] - 1) * n[k]);
       const bool mine = other.triangle < 0 || other.triangle > static_cast<std::int32_t>(t);
       if ((!smooth || other.triangle < 0) && mine) {
         const Vec3 their_middle = middleNormal(p[i], p[k], beyond[0], beyond[1]);
@@ -152,7 +162,9 @@ void ShellOracle::buildFaces(const TriangleMesh& mesh) {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t k = (i + 1) % 3, l = (i + 2) % 3;
       const Vec3 M = bezier(std::array<Vec3, 4>{p[k], handles[k][0], handles[k][1], p[l]}, 0.5);
-      const auto median = smoothHandles(p[i], M, n[i], unit(bezier(std::array<Vec3, 3>{n[k], middles[k], n[l]}, 0.5)));
+      const std::array<double, 3> omega = {1, 1 / weight[0], weight[2]};  // of the corners
+      const auto median = smoothHandles(p[i], M, n[i], unit(bezier(std::array<Vec3, 3>{n[k], middles[k], n[l]}, 0.5)),
+                                        2 * omega[i] / (omega[k] + omega[l]));
       middle += bezier(std::array<Vec3, 4>{p[i], median[0], median[1], M}, 2.0 / 3) / 3;
       others += 3 * (handles[i][0] + handles[i][1]);
     }

@@ -135,18 +135,16 @@ std::vector<Record> flatCornerSpeeds(int rows) {
   return cornerSpeeds(contact::cylinderWithFlat(0.025, 0.03, 0.015, 48, rows), {0.015, 0.02, 0.03}, {1, 0.6, 1});
 }
 
-// A long quad of a cone is no rectangle: its diagonal's middle isn't half way around,
-// and no edge knows that. Refine such meshes.
-std::vector<Record> coneSpeeds(int rows, double off) {
-  constexpr double kBottom = 0.03, kTaper = 0.015, kHeight = 0.04;  // [m]
+// From 30 mm at the foot to `top` [m]; to a tip if that is 0.
+std::vector<Record> coneSpeeds(int rows, double top, double off) {
+  constexpr double kBottom = 0.03, kHeight = 0.04;  // [m]
   std::vector<Vec2> profile = {{0, -kHeight / 2}};
-  for (int k = 0; k <= rows; ++k)
-    profile.push_back({kBottom - kTaper * k / rows, kHeight * (static_cast<double>(k) / rows - 0.5)});
+  for (int k = 0; k <= rows - (top == 0); ++k)
+    profile.push_back({kBottom + (top - kBottom) * k / rows, kHeight * (static_cast<double>(k) / rows - 0.5)});
   profile.push_back({0, kHeight / 2});
   std::vector<RoundPlace> places;
-  for (const double z : {-0.012, 0.0, 0.012}) {
-    places.push_back({kBottom - kTaper * (z / kHeight + 0.5), z, std::atan(kTaper / kHeight)});
-  }
+  for (const double z : {-0.012, 0.0, 0.012})
+    places.push_back({kBottom + (top - kBottom) * (z / kHeight + 0.5), z, math::atan((kBottom - top) / kHeight)});
   return speedsAround(contact::lathe(profile, 48), places, 0, 1 - off, 1 + off);
 }
 std::vector<Record> uvSphereSpeeds() {
@@ -248,9 +246,12 @@ std::vector<Measurement> accuracyMeasurements() {
        [](MeasureContext&) {
          return cornerSpeeds(contact::box({0.02, 0.02, 0.02}), {0.02, 0.02, 0.02}, {1, 1, 1});
        }},
-      {"accuracy/speed-cone-1-row", [](MeasureContext&) { return coneSpeeds(1, 0.14); }},
-      {"accuracy/speed-cone-2-rows", [](MeasureContext&) { return coneSpeeds(2, 0.1); }},
-      {"accuracy/speed-cone-8-rows", [](MeasureContext&) { return coneSpeeds(8, 0.02); }},
+      {"accuracy/speed-cone-1-row", [](MeasureContext&) { return coneSpeeds(1, 0.015, 0.002); }},
+      {"accuracy/speed-cone-2-rows", [](MeasureContext&) { return coneSpeeds(2, 0.015, 0.002); }},
+      {"accuracy/speed-cone-8-rows", [](MeasureContext&) { return coneSpeeds(8, 0.015, 0.004); }},
+      {"accuracy/speed-narrow-cone-1-row", [](MeasureContext&) { return coneSpeeds(1, 0.003, 0.005); }},
+      {"accuracy/speed-pointed-cone-1-row", [](MeasureContext&) { return coneSpeeds(1, 0, 0.003); }},
+      {"accuracy/speed-pointed-cone-8-rows", [](MeasureContext&) { return coneSpeeds(8, 0, 0.008); }},
       {"accuracy/speed-uv-sphere", [](MeasureContext&) { return uvSphereSpeeds(); }},
       {"accuracy/gaps-across-smooth-edges", gapsAcrossEdges},
       {"accuracy/published-iteration", publishedIterations}};
