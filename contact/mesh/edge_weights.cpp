@@ -16,7 +16,7 @@ constexpr double kFlat = 0.005;      // angle between triangles of one plane, of
 constexpr double kLeastLean = 0.35;  // [rad] of a tip's facets, as kFarthestMirror of corner_normals.cpp
 constexpr double kTip = 1e-6;        // rounds a tip by less than 0.1 um of 50 mm
 constexpr double kMost = 100;        // largest over smallest omega of a facet: further in its fit says nothing
-constexpr double kEven = 0.015;  // of ln w: what normals that were found from facets have by themselves; .7 % of speed
+constexpr double kEven = 0.05;       // of ln w: less changes the contact's speed by .7 % at most
 
 // The smallest g of least squares, over the corners of one facet, for what the normals turn along their one arc.
 class WeightFit {

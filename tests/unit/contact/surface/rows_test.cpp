@@ -87,7 +87,7 @@ void expectEvenCone(const TriangleMesh& mesh, double top, int segments, const st
   for (const double share : {0.2, 0.5, 0.8}) {
     const Evenness run =
         runAround(mesh, 0.03 + share * (top - 0.03), -0.02 + 0.04 * share, std::atan((0.03 - top) / 0.04), 0, 2 * M_PI);
-    expectEven(run, 15 * part + 5e-4, 16e-3 * part, what + " at " + std::to_string(share));
+    expectEven(run, 15 * part + 7.5e-3, 16e-3 * part, what + " at " + std::to_string(share));
   }
 }
 
