@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pincer/contact/elementary.h"
+#include "pincer/contact/functions/invariants.h"
 
 namespace pincer::tasks {
 namespace {
@@ -57,7 +58,8 @@ class TreeDraft {
       const Vec3 axes[] = {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
       return Quat::FromTwoVectors(Vec3::UnitZ(), axes[random_.below(3)]);
     }
-    return Quat::FromTwoVectors(Vec3::UnitZ(), random_.normal3().normalized());
+    const Quat q = Quat::FromTwoVectors(Vec3::UnitZ(), random_.normal3().normalized());
+    return isUnit(q) ? q : q.normalized();  // opposite vectors cost it digits
   }
 
   void addJoint(int body, int parent, const Vec3& p_W) {

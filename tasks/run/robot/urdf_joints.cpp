@@ -103,7 +103,7 @@ std::vector<RobotJoint> readAxes(const Joint& joint) {
       break;
   }
   // Across the axis, which is the plane's normal: of z these are x and y.
-  const Quat q = Quat::FromTwoVectors(Vec3::UnitZ(), axis.axis_B);
+  const Quat q = Quat::FromTwoVectors(Vec3::UnitZ(), axis.axis_B).normalized();
   RobotJoint x = axis, y = axis;
   x.kind = y.kind = RobotJointKind::kSlide;
   x.name += "_x";

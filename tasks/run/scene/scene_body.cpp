@@ -147,7 +147,7 @@ engine::BodyStart readStart(const JsonValue& json, const engine::BodySpec& spec)
 void readBody(const JsonValue& json, SceneNames& names, Scene& scene) {
   json.allowOnly(keys::kBody);
   engine::BodySpec spec;
-  spec.name = names.readNext(json, fmt::format("body{}", scene.bodies.size()));
+  spec.name = names.readNextBody(json, scene);
   readShapes(json, scene.file, spec);
   spec.dynamic = readDynamic(json, hasSupport(spec));
   spec.mass = readMass(json, spec);

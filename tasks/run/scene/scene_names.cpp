@@ -20,22 +20,35 @@ void requireName(const std::string& name, const JsonValue& place) {
     place.reject(fmt::format("is too long for a name: it has {} letters, at most {} go.", name.size(), kLongestName));
 }
 
+void SceneNames::take(const std::string& name, const JsonValue& place) {
+  requireName(name, place);
+  if (taken_.insert(name).second) return;
+  place.reject(fmt::format(
+      "can't be called \"{}\": another body, joint, drive, frame or finger is. Names tell them apart in quantities.",
+      name));
+}
+
+void SceneNames::takeBody(const std::string& name, const JsonValue& place, const Scene& scene) {
+  take(name, place);
+  bodies_.emplace(name, static_cast<int>(scene.bodies.size()));
+}
+
 std::string SceneNames::readNext(const JsonValue& json, const std::string& otherwise) {
   const JsonValue* value = json.find("name");
-  const std::string name = value ? value->text() : otherwise;
-  const JsonValue& place = value ? *value : json;
-  requireName(name, place);
-  if (!index_.emplace(name, static_cast<int>(index_.size())).second) {
-    place.reject(fmt::format(
-        "can't be called \"{}\": another body, joint, drive, frame or finger is. Names tell them apart in quantities.",
-        name));
-  }
+  std::string name = value ? value->text() : otherwise;
+  take(name, value ? *value : json);
+  return name;
+}
+
+std::string SceneNames::readNextBody(const JsonValue& json, const Scene& scene) {
+  std::string name = readNext(json, fmt::format("body{}", scene.bodies.size()));
+  bodies_.emplace(name, static_cast<int>(scene.bodies.size()));
   return name;
 }
 
 int SceneNames::bodyNamed(const JsonValue& json, const Scene& scene) const {
-  const auto found = index_.find(json.text());
-  if (found != index_.end() && found->second < static_cast<int>(scene.bodies.size())) return found->second;
+  const auto found = bodies_.find(json.text());
+  if (found != bodies_.end()) return found->second;
   std::vector<std::string_view> bodies;
   for (const engine::BodySpec& body : scene.bodies) bodies.push_back(body.name);
   return static_cast<int>(json.oneOf(bodies));

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "pincer/tasks/run/files/strict_json.h"
@@ -25,13 +26,19 @@ class SceneNames {
   // The name under "name", or `otherwise`, now that of the next part. It must be
   // new in the scene, for quantities go by it.
   std::string readNext(const JsonValue& json, const std::string& otherwise);
+  // The same of a body, which is to be the scene's next one.
+  std::string readNextBody(const JsonValue& json, const Scene& scene);
+  // Makes `name` one of the scene's; refused at `place` if it is taken, or isn't a name.
+  void take(const std::string& name, const JsonValue& place);
+  void takeBody(const std::string& name, const JsonValue& place, const Scene& scene);
   // The index of the body that `json` names; throws with a did-you-mean.
   int bodyNamed(const JsonValue& json, const Scene& scene) const;
   // The index of the joint, as bodyNamed.
   static int jointNamed(const JsonValue& json, const Scene& scene);
 
  private:
-  std::unordered_map<std::string, int> index_;  // bodies come before fingers
+  std::unordered_set<std::string> taken_;
+  std::unordered_map<std::string, int> bodies_;  // their places in the scene: a robot's parts may stand before them
 };
 
 // The mass of what has this volume [m^3], by "mass" or "density"; nothing if neither is there.

@@ -1,6 +1,7 @@
 // Robots as scenes: loops, ranges, springs of tendons, and that all ways to run one give the same bits.
 #include "pincer/tasks/run/robot/robot_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -99,6 +100,29 @@ TEST_F(RobotScenes, ImportedRunAndNamedInASceneARobotGivesTheSameBits) {
   for (Simulation* sim : {&as_it_is, &imported, &named}) run(*sim, 500);
   EXPECT_EQ(engine::hashOf(as_it_is.state().world), engine::hashOf(imported.state().world));
   EXPECT_EQ(engine::hashOf(as_it_is.state().world), engine::hashOf(named.state().world));
+}
+
+// A body's name was taken for its place among all names: the weld held another ball, and a joint's name was a body.
+TEST_F(RobotScenes, BodiesBesideARobotAreFoundByTheirNames) {
+  write("robot.xml", kFourBar);
+  const auto scene = [&](const std::string& held) {
+    std::string balls;
+    for (int i = 0; i < 20; ++i)
+      balls += fmt::format(R"({}{{"name": "ball{}", "shape": {{"type": "sphere", "radius": 0.01}}, "mass": 1,
+        "position": [{}, 0, 1]}})",
+                           i > 0 ? ", " : "", i, 1 + 0.1 * i);
+    return parseScene(R"({"version": 1, "duration": 1, "robots": [{"name": "it", "file": "robot.xml"}], "bodies": [)" +
+                          balls + R"(], "joints": [{"type": "weld", "body": ")" + held + R"("}]})",
+                      folder_ / "scene.json");
+  };
+  for (const char* name : {"ball0", "ball7", "ball19"}) {
+    Simulation sim(scene(name));
+    run(sim, 100);
+    EXPECT_NEAR(measured(sim, std::string(name) + ".p_z"), 1, 1e-12) << name;
+    EXPECT_LT(measured(sim, "ball3.p_z"), 0.96) << name;
+  }
+  EXPECT_NE(tests::errorOf([&] { scene("it_elbow"); }).find("isn't known"), std::string::npos)
+      << tests::errorOf([&] { scene("it_elbow"); });
 }
 
 // A slider's way was in "rad or m".

@@ -2,6 +2,7 @@
 // complaint for each bad one.
 #include "pincer/tasks/run/robot/urdf.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -165,6 +166,19 @@ TEST_F(UrdfReader, JointsOfEachType) {
   EXPECT_EQ(jointsOf(5)[2].kind, RobotJointKind::kHinge);
   EXPECT_EQ(jointsOf(6).at(0).kind, RobotJointKind::kFree);
   EXPECT_EQ(r.bodies[6].parent, -1);
+}
+
+// Directions in the plane were not of length 1 where its normal was nearly -z.
+TEST_F(UrdfReader, APlanarJointsDirectionsAreUnitAndSquareToItsNormal) {
+  for (const double tilt : {0.0, 1e-6, 1e-5, 1e-4, 1e-3, 0.1}) {
+    const Robot r = robot(link("base") + link("a") +
+                          joint("slide", "planar", "base", "a", fmt::format(R"(<axis xyz="{} 0 -1"/>)", tilt)));
+    const std::vector<RobotJoint>& joints = r.bodies[1].joints;
+    ASSERT_EQ(joints.size(), 3u);
+    const Vec3 &x = joints[0].axis_B, &y = joints[1].axis_B, &z = joints[2].axis_B;
+    EXPECT_NEAR(x.norm(), 1, 1e-15) << tilt;
+    EXPECT_LT((x.cross(y) - z).norm(), 1e-10) << tilt;  // round-off over the least tilt
+  }
 }
 
 TEST_F(UrdfReader, AMimicOfAMimicFollowsTheOneThatLeads) {
