@@ -32,7 +32,7 @@ struct XmlElement {
   [[noreturn]] void reject(std::string_view problem) const;
 };
 
-// The root element of a file. Throws InputError.
+// The root element of a file, or of a robot that the program carries (builtin_files.h). Throws InputError.
 XmlElement readXml(const std::string& path);
 // The same from text; `name` stands for the file in messages.
 XmlElement parseXml(std::string_view text, const std::string& name);

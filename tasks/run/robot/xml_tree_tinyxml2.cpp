@@ -5,6 +5,7 @@
 
 #include "pincer/contact/io/input_file.h"
 #include "pincer/contact/io/printable.h"
+#include "pincer/tasks/run/files/builtin_files.h"
 #include "pincer/tasks/run/robot/xml_tree.h"
 
 namespace pincer::tasks {
@@ -75,6 +76,11 @@ XmlElement parseXml(std::string_view text, const std::string& name) {
   return TreeBuilder(name).build(*root, 1);
 }
 
-XmlElement readXml(const std::string& path) { return parseXml(readInputFile(path, kXmlFile), path); }
+XmlElement readXml(const std::string& path) {
+  for (const BuiltinFile& file : builtinFiles()) {
+    if (file.path == path) return parseXml(file.text, path);
+  }
+  return parseXml(readInputFile(path, kXmlFile), path);
+}
 
 }  // namespace pincer::tasks

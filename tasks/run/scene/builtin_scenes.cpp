@@ -33,8 +33,9 @@ const BuiltinScene& builtinNamed(std::string_view name) {
 }
 
 NamedJson parseBuiltin(std::string_view name) {
-  const std::string file = fmt::format("{}.json", name);
-  return {file, parseJson(builtinNamed(name).json, file)};
+  const BuiltinScene& scene = builtinNamed(name);
+  const std::string file(scene.file);
+  return {file, parseJson(scene.json, file)};
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ namespace pincer::tasks {
 
 struct BuiltinScene {
   std::string_view name;  // of the file, without .json
+  std::string_view file;  // its name in messages; of one that names a robot beside that (builtin_files.h)
   std::string_view json;
 };
 

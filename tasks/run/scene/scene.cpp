@@ -135,6 +135,17 @@ void addRobot(const JsonValue& json, SceneNames& names, Scene& scene) {
   for (std::size_t i = 0; i < lines.size(); ++i) std::fill(lines[i]->begin() + before[i], lines[i]->end(), json.line());
 }
 
+void readFingers(const JsonValue& json, SceneNames& names, Scene& scene) {
+  int count = 0;
+  for (const JsonValue& finger : listOf(json, kMostFingers)) {
+    const std::string usual_name = fmt::format("finger{}", count++);
+    if (finger.find("on"))
+      addCarriedFinger(finger, usual_name, names, scene);
+    else
+      scene.fingers.push_back(readFinger(finger, usual_name, names, scene));
+  }
+}
+
 }  // namespace
 
 Scene sceneOf(const JsonValue& json, const std::string& name) {
@@ -153,9 +164,7 @@ Scene sceneOf(const JsonValue& json, const std::string& name) {
     for (const JsonValue& robot : listOf(*v, kMostRobots)) addRobot(robot, names, scene);
   }
   readBodies(json, names, scene);
-  if (const JsonValue* v = json.find("fingers")) {
-    for (const JsonValue& finger : listOf(*v, kMostFingers)) scene.fingers.push_back(readFinger(finger, names, scene));
-  }
+  if (const JsonValue* v = json.find("fingers")) readFingers(*v, names, scene);
   if (scene.bodies.empty() && scene.fingers.empty())
     json.at("bodies").reject("is empty, and there is no finger: nothing could happen.");
   if (const JsonValue* v = json.find("camera")) scene.camera = readCamera(*v);

@@ -8,8 +8,6 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};  // by axis of the finger
-
 // One number for all axes, or [x, y, z].
 Vec3 readPerAxis(const JsonValue& json, const NumberRule& rule) {
   if (json.kind() == JsonValue::Kind::kArray) return json.vector(rule);
@@ -22,7 +20,7 @@ void requireHeldAxes(const JsonValue& json, const engine::DrivenPointModel& coup
     json.reject(
         fmt::format("has neither mass nor stiffness along {}: nothing says where it is. Give it a mass or a stiffness, "
                     "or lock the axis.",
-                    kAxes[static_cast<std::size_t>(axis)]));
+                    keys::kAxes[static_cast<std::size_t>(axis)]));
   }
 }
 
@@ -73,7 +71,7 @@ void readCoupling(const JsonValue& json, grasp::FingerModel& finger) {
   if (const JsonValue* v = json.find("damping"))
     readDirections(*v, ranges::kDamping, coupling.damping, finger.along_normal);
   if (const JsonValue* v = json.find("locked")) {
-    for (const JsonValue& axis : v->array()) coupling.locked[static_cast<Eigen::Index>(axis.oneOf(kAxes))] = true;
+    for (const JsonValue& axis : v->array()) coupling.locked[static_cast<Eigen::Index>(axis.oneOf(keys::kAxes))] = true;
   }
   if (const JsonValue* v = json.find("twist_stiffness")) coupling.twist_stiffness = v->number(ranges::kTwist);
   if (const JsonValue* v = json.find("twist_damping")) coupling.twist_damping = v->number(ranges::kTwist);
@@ -169,10 +167,11 @@ FingerPath readMotion(const JsonValue& json, const std::string& scene_file) {
 
 }  // namespace
 
-SceneFinger readFinger(const JsonValue& json, SceneNames& names, const Scene& scene) {
+SceneFinger readFinger(const JsonValue& json, const std::string& usual_name, SceneNames& names, const Scene& scene) {
   json.allowOnly(keys::kFinger);
+  refuse(json, "material", "goes with \"on\" only: a finger of a hand has the friction of what it touches.");
   SceneFinger finger;
-  finger.model.name = names.readNext(json, fmt::format("finger{}", scene.fingers.size()));
+  finger.model.name = names.readNext(json, usual_name);
   readTipOf(json, scene, finger.model);
   readCoupling(json, finger.model);
   if (const JsonValue* v = json.find("method"))

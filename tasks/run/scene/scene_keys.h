@@ -43,7 +43,7 @@ inline constexpr std::array<Word, 4> kJointTypes = {"pivot", "slider", "ball", "
 inline constexpr std::array<Word, 3> kPair = {"bodies", "touch", "material"};
 inline constexpr std::array<Word, 6> kMaterial = {"mu_s",           "mu_d",           "restitution",
                                                   "torsion_radius", "rolling_radius", "stribeck_speed"};
-inline constexpr std::array<Word, 21> kFinger = {"name",
+inline constexpr std::array<Word, 23> kFinger = {"name",
                                                  "radius",
                                                  "shape",
                                                  "method",
@@ -63,7 +63,10 @@ inline constexpr std::array<Word, 21> kFinger = {"name",
                                                  "twist_damping",
                                                  "turn_stiffness",
                                                  "turn_damping",
-                                                 "taxels"};
+                                                 "taxels",
+                                                 "on",
+                                                 "material"};
+inline constexpr std::array<Word, 3> kAxes = {"x", "y", "z"};  // that may be locked
 inline constexpr std::array<Word, 3> kTaxels = {"rows", "columns", "pitch"};
 inline constexpr std::array<Word, 2> kPerDirection = {"normal", "tangential"};
 inline constexpr std::array<Word, 2> kArm = {"mass", "damping"};

@@ -83,7 +83,9 @@ ScenePair readPair(const JsonValue& json, const SceneNames& names, const Scene& 
 std::vector<Vec3> readPoints(const JsonValue& json, const std::string& file);
 contact::FingerShape readFingerShape(const JsonValue& json, const std::string& file);
 
-SceneFinger readFinger(const JsonValue& json, SceneNames& names, const Scene& scene);
+SceneFinger readFinger(const JsonValue& json, const std::string& usual_name, SceneNames& names, const Scene& scene);
+// A finger "on" a body, as the body, joints and pair that it is.
+void addCarriedFinger(const JsonValue& json, const std::string& usual_name, SceneNames& names, Scene& scene);
 
 // A quantity of joints or drives in the unit of one that slides, or of one that turns.
 const QuantityKind& inUnitOf(bool slides, const QuantityKind& kind);

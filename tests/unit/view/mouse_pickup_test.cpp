@@ -13,8 +13,8 @@ using devices::InputKind;
 // A person at the window, played: the viewer's own events, the servo's own ticks, in virtual time.
 class PlayedPerson {
  public:
-  PlayedPerson()
-      : simulation_(readBuiltinScene("pickup")),
+  explicit PlayedPerson(std::string_view scene = "pickup")
+      : simulation_(readBuiltinScene(scene)),
         hand_(mouseMounts(simulation_.scene())),
         start_(snapshotOf(simulation_)),
         channel_(start_),
@@ -68,6 +68,39 @@ TEST(MousePickup, PinchesLiftsHoldsAndLetsGo) {
   person.button(devices::kButtonLeft, false);
   person.wait(1);
   EXPECT_LT(person.height(), 0.05);  // fallen back into the dish
+}
+
+// The robot holds the cube until 4 s, then lets go of it.
+TEST(MousePickup, TakesACubeFromAGripper) {
+  PlayedPerson person("takeover");
+  const Scene& scene = person.simulation().scene();
+  const auto measured = [&](const char* quantity) {
+    return quantityOf(quantity, scene).measure(person.simulation().moment());
+  };
+  person.moveBy(0, 0);
+  person.wait(2.5);
+  EXPECT_GT(measured("cube|left_tip.normal_force"), 2);
+  person.button(devices::kButtonLeft, true);
+  person.wait(1.4);
+  EXPECT_EQ(measured("index.touching"), 1);
+  const double before = measured("cube.p_z");
+  person.wait(1.6);
+  EXPECT_EQ(measured("cube|left_tip.touching"), 0);
+  // The hand carries it now: on each side the finger's spring of 1 kN/m and the arm's of 400 N/m.
+  EXPECT_NEAR(before - measured("cube.p_z"), 0.5 * 0.1 * 9.81 * (1 / 1000.0 + 1 / 400.0), 1e-6);
+  for (int i = 0; i < 20; ++i) {
+    person.moveBy(1, 1);
+    person.wait(0.03);
+  }
+  person.wait(0.5);
+  EXPECT_LT(measured("cube.p_z"), before - 5e-3);
+  EXPECT_GT(measured("cube.p_x"), 5e-3);
+  const double carried = measured("cube.p_z");
+  person.wait(2);
+  EXPECT_NEAR(measured("cube.p_z"), carried, 1e-5);  // held: nothing creeps
+  person.button(devices::kButtonLeft, false);
+  person.wait(1);
+  EXPECT_LT(measured("cube.p_z"), carried - 0.02);
 }
 
 // A pickup can be held still, and goes on where it stood.
