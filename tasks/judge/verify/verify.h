@@ -21,6 +21,8 @@ std::vector<Measurement> verifyTrees();
 std::vector<Measurement> verifyLoops();
 std::vector<Measurement> verifyJointLimits();
 std::vector<Measurement> verifyGrippers();
+std::vector<Measurement> verifyRobots();
+std::vector<Measurement> verifyHands();
 std::vector<Measurement> verifyToppling();
 std::vector<Measurement> verifyBouncing();
 std::vector<Measurement> verifyMasonry();
