@@ -1,6 +1,7 @@
 #include "pincer/tests/campaign/inputs.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -174,8 +175,20 @@ void makeKilledSession(const Ground& ground) {
   throw std::runtime_error("no session could be killed before it was complete");
 }
 
+// Of a processor, that programs which have ended took [s].
+double timeOfPrograms() {
+  rusage usage{};
+  ::getrusage(RUSAGE_CHILDREN, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
 void makeSessions(Ground& ground) {
-  ground.session_time = make(ground, pickupArguments("pickup")).seconds;
+  const double before = timeOfPrograms();
+  make(ground, pickupArguments("pickup"));
+  ground.session_time = timeOfPrograms() - before;
   make(ground, {"export", "pickup/session.db", "--trial", "1", "--out", "recording"});
   make(ground, studyArguments("study"));
   makePeoplesSession(ground);

@@ -176,16 +176,23 @@ RunningProgram::~RunningProgram() {
   ::close(handle_);
 }
 
+bool RunningProgram::endsWithin(double time) const {
+  for (double until = began_ + time;;) {
+    if (awaitEnd(handle_, until)) return true;
+    const double later = began_ + time + waitedForProcessor(process_);
+    if (later <= until) return false;
+    until = later;
+  }
+}
+
 Ended RunningProgram::wait() {
   Ended e;
   bool over = false;
-  if (launch_.blow && !(over = awaitEnd(handle_, began_ + launch_.blow->after))) {
+  if (launch_.blow && !(over = endsWithin(launch_.blow->after))) {
     e.struck = true;
     ::kill(process_, launch_.blow->signal);
   }
-  double until = began_ + launch_.limit;
-  while (!over && !(over = awaitEnd(handle_, until)) && until < began_ + launch_.limit + waitedForProcessor(process_))
-    until = began_ + launch_.limit + waitedForProcessor(process_);
+  over = over || endsWithin(launch_.limit);
   if (!over) {
     e.stopped = true;
     ::kill(process_, launch_.stop_signal);

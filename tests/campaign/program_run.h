@@ -17,7 +17,7 @@ enum class Stream { kNothing, kKept, kClosed, kFull, kBrokenPipe };  // kNothing
 
 struct Blow {
   int signal = 9;
-  double after = 0;  // [s] since the start
+  double after = 0;  // [s] since the start, as the time limit is counted
 };
 
 struct Launch {
@@ -63,6 +63,9 @@ class RunningProgram {
   Ended wait();
 
  private:
+  // True once it has ended, false `time` [s] after its start, not counting what it waited for a processor.
+  bool endsWithin(double time) const;
+
   Launch launch_;
   int process_ = -1, handle_ = -1;
   double began_ = 0;

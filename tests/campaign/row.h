@@ -44,7 +44,7 @@ struct Ground {
   fs::path pincer, build, source, out;
   std::uint64_t seed = 1;
   double times = 1;
-  double session_time = 1;                            // that the session of inputs.h takes here and now [s]
+  double session_time = 1;                            // of a processor, that the session of inputs.h takes [s]
   bool has_devices = false;                           // real ones are attached: nothing may move them
   fs::path inputs() const { return out / "inputs"; }  // made once, never changed by a case
 };
