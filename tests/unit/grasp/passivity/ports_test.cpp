@@ -194,9 +194,23 @@ TEST(Passivity, DissipatedEnergyIsNoCredit) {
 }
 
 TEST(Passivity, OptionsOutOfRangeAreNamed) {
-  PassivityOptions options;
-  options.most_damping = -1;
-  EXPECT_NE(tests::errorOf([&] { check(options); }).find("most_damping = -1 is out of range"), std::string::npos);
+  const auto refusal = [](auto change) {
+    PassivityOptions options;
+    options.arms = {ArmPort{}};
+    change(options);
+    return tests::errorOf([&] { check(options); });
+  };
+  EXPECT_EQ(refusal([](PassivityOptions&) {}), "");
+  const auto expectNamed = [&](auto change, const char* says) {
+    const std::string said = refusal(change);
+    EXPECT_NE(said.find(says), std::string::npos) << says << ", not: " << said;
+  };
+  expectNamed([](auto& o) { o.most_damping = -1; }, "most_damping = -1 is out of range");
+  expectNamed([](auto& o) { o.most_damping = 1001; }, "most_damping = 1001 is out of range");
+  expectNamed([](auto& o) { o.still_speed = 0; }, "still_speed = 0 is out of range");
+  expectNamed([](auto& o) { o.reserve = -1; }, "reserve = -1 is out of range");
+  expectNamed([](auto& o) { o.arms[0].mass = 0; }, "mass of an arm = 0 is out of range");
+  expectNamed([](auto& o) { o.arms[0].damping = -2; }, "damping of an arm = -2 is out of range");
 }
 
 // Two simulated hands with random wishes squeeze and shake a ball of 500 g, at
