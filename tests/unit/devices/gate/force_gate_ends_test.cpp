@@ -171,6 +171,21 @@ TEST(ForceGateEnds, AnArmOfHalfANewtonNarrowsTheLimitsToo) {
   EXPECT_EQ(within(GateLimits{}, arm).continuous_force, 0.25);
 }
 
+TEST(ForceGateEnds, AnArmThatTellsNoContinuousForceKeepsTheLimit) {
+  ArmCapabilities arm;
+  arm.peak_force = 0.5;
+  arm.continuous_force = 0;
+  EXPECT_EQ(within(GateLimits{}, arm).continuous_force, GateLimits{}.continuous_force) << "0: not told";
+}
+
+TEST(ForceGateEnds, SaysThatForcesAreZeroAfterATripAndOnlyThen) {
+  const auto saysZero = [](Trip trip) { return describe(trip).find("Forces are zero") != std::string::npos; };
+  EXPECT_FALSE(saysZero(Trip::kNone));
+  for (const Trip trip : {Trip::kNotFinite, Trip::kOverSpeed, Trip::kStaleSample, Trip::kInvalidSample, Trip::kGaveUp,
+                          Trip::kMissedDeadline, Trip::kException, Trip::kOperator})
+    EXPECT_TRUE(saysZero(trip)) << describe(trip);
+}
+
 TEST(ForceGateEnds, AnAgeOfZeroIsntShownWithATrip) {
   GateState state;
   trip(state, Trip::kStaleSample);
