@@ -34,6 +34,7 @@ constexpr Target kTargets[] = {
     {"mesh_stl", mesh_stl},
     {"mesh_ply", mesh_ply},
     {"mesh_off", mesh_off},
+    {"mesh_repair", mesh_repair},
     {"usb_frame", usb_frame},
     {"falcon_packet", falcon_packet},
     {"haply_message", haply_message},

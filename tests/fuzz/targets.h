@@ -17,6 +17,7 @@ void mesh_obj(Bytes input);
 void mesh_stl(Bytes input);
 void mesh_ply(Bytes input);
 void mesh_off(Bytes input);
+void mesh_repair(Bytes input);  // a mesh drawn by the bytes: inspected, repaired, inspected again
 
 // devices
 void usb_frame(Bytes input);      // 64 bytes, and what its payload says
