@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "pincer/devices/usb/frame.h"
@@ -18,10 +19,25 @@ void demandSameAgain(const Frame& frame, const std::optional<Message>& message) 
   demand(again.payload == frame.payload && again.type == frame.type, "a message that is told again is the same bytes");
 }
 
+// A gimbal may be told by a quaternion that isn't of unit length to the last step, and is read as one that is: it is the
+// same turn again, all else the same bytes.
+void demandSameArmAgain(const Frame& frame) {
+  constexpr std::size_t kGimbal = 26, kGimbalBytes = 8;  // docs/usb-protocol.md
+  const std::optional<ArmState> state = armStateIn(frame);
+  if (!state) return;
+  Frame again = toFrame(*state);
+  const std::optional<ArmState> second = armStateIn(again);
+  demand(second && second->q_DF.has_value() == state->q_DF.has_value(), "a state that is told again is read again");
+  if (state->q_DF)
+    demand(std::abs(second->q_DF->dot(*state->q_DF)) > 1 - 1e-6, "a gimbal is told again as the same turn");
+  std::copy_n(frame.payload.begin() + kGimbal, kGimbalBytes, again.payload.begin() + kGimbal);
+  demand(again.payload == frame.payload, "a state that is told again is the same bytes but for the gimbal's length");
+}
+
 void readPayload(const Frame& frame) {
   demandSameAgain(frame, identityIn(frame));
   demandSameAgain(frame, armCommandIn(frame));
-  demandSameAgain(frame, armStateIn(frame));
+  demandSameArmAgain(frame);
   demandSameAgain(frame, displayCommandIn(frame));
   demandSameAgain(frame, displayStateIn(frame));
   demandSameAgain(frame, statusIn(frame));
