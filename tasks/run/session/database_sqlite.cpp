@@ -9,6 +9,7 @@
 #include <new>
 
 #include "pincer/contact/error.h"
+#include "pincer/contact/io/printable.h"
 #include "pincer/tasks/run/process/interrupted.h"
 #include "pincer/tasks/run/session/database.h"
 
@@ -145,7 +146,7 @@ LastWords::~LastWords() { Reserve::open_ = false; }
 void Database::fail(int code, std::string_view doing) const {
   if ((code & 0xff) == SQLITE_NOMEM || code == SQLITE_IOERR_NOMEM) throw std::bad_alloc();
   std::string cause = sqlite3_errstr(code);
-  if (handle() && (sqlite3_errcode(handle()) & 0xff) == (code & 0xff)) cause = sqlite3_errmsg(handle());
+  if (handle() && (sqlite3_errcode(handle()) & 0xff) == (code & 0xff)) cause = printable(sqlite3_errmsg(handle()));
   const int system = handle() ? sqlite3_system_errno(handle()) : 0;
   const bool from_system = (code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_CANTOPEN;
   if (system != 0 && from_system) cause += fmt::format(" ({})", std::strerror(system));

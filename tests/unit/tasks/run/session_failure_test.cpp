@@ -4,8 +4,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <thread>
 
 #include "pincer/contact/error.h"
@@ -218,6 +220,26 @@ TEST(FullDisk, FailsWithTheCauseAndKeepsFinishedTrials) {
   EXPECT_GE(reader.trials().size(), finished);
   EXPECT_FALSE(reader.complete());
   EXPECT_FALSE(reader.warning().empty());
+}
+
+// SQLite repeats the file's own words: here a control character in the text of an index.
+TEST(DamagedSession, ShowsControlCharactersOfItsSchemaAsText) {
+  const TemporaryDirectory folder;
+  const std::string path = folder / "session.db";
+  SessionWriter::create(path, {}).close();
+  std::string bytes = tests::readFile(path);
+  const std::size_t at = bytes.find("ON response");
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = '\x01';
+  std::ofstream(path, std::ios::binary) << bytes;
+  std::string said;
+  try {
+    SessionReader(path).trials();
+  } catch (const InputError& refusal) {
+    said = refusal.what();
+  }
+  EXPECT_NE(said.find("malformed database schema"), std::string::npos) << said;
+  EXPECT_TRUE(std::none_of(said.begin(), said.end(), [](unsigned char c) { return c < ' '; })) << said;
 }
 
 }  // namespace
