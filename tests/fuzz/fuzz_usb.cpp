@@ -19,8 +19,8 @@ void demandSameAgain(const Frame& frame, const std::optional<Message>& message) 
   demand(again.payload == frame.payload && again.type == frame.type, "a message that is told again is the same bytes");
 }
 
-// A gimbal may be told by a quaternion that isn't of unit length to the last step, and is read as one that is: it is the
-// same turn again, all else the same bytes.
+// A gimbal may be told by a quaternion that isn't of unit length to the last step, and is read as one that is: it is
+// the same turn again, all else the same bytes.
 void demandSameArmAgain(const Frame& frame) {
   constexpr std::size_t kGimbal = 26, kGimbalBytes = 8;  // docs/usb-protocol.md
   const std::optional<ArmState> state = armStateIn(frame);
