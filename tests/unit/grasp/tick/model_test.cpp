@@ -42,10 +42,7 @@ TEST(GraspModel, FingersOutOfRangeAreNamed) {
       {[](FingerModel& f) { f.taxels = {.rows = 4}; }, "taxels in 4 rows and 0 columns are out of range 2 .. 64"},
       {[](FingerModel& f) { f.taxels = {.rows = 4, .columns = 65}; }, "taxels in 4 rows and 65 columns"},
       {[](FingerModel& f) { f.taxels = {.rows = 4, .columns = 4, .pitch = 0.2}; }, "pitch of the taxels = 0.2"},
-      {[](FingerModel& f) {
-         f.shape = contact::Sphere{-0.01};
-       },
-       "finger \"index\": "}};
+      {[](FingerModel& f) { f.shape = contact::Sphere{-0.01}; }, "finger \"index\": "}};
   EXPECT_EQ(refusalOf([](FingerModel&) {}), "");
   for (const Case& one : cases) {
     const std::string said = refusalOf(one.change);
