@@ -19,8 +19,8 @@ namespace pincer::engine {
 
 constexpr double kRestSpeed = 1e-13;  // 3 um in a year [m/s]
 
-// What links do that stand still [m/s]: coordinates of some radians or metres are rounded, which drives answer; what is
-// slower than an ulp per tick doesn't move them. 30 um in a year with ticks of 1 ms.
+// How fast links that stand still may be [m/s]: coordinates of some radians or metres are rounded, which drives answer;
+// anything slower than an ulp per tick doesn't move them. 30 um in a year with ticks of 1 ms.
 inline double linkNoise(double h) { return 4 * std::numeric_limits<double>::epsilon() / h; }
 
 // To the bit, but for the sign of zeros.

@@ -122,7 +122,7 @@ class IslandSolve {
     const auto is_little = [&](int i) { return isLittle(scratch_.contacts[static_cast<std::size_t>(i)].phi); };
     return std::all_of(order_.begin(), order_.end(), is_little);
   }
-  // What is deeper is pushed out, whatever holds it (push_out.h).
+  // Or it is pushed out, whatever holds it (push_out.h).
   bool isLittle(double phi) const { return phi >= -kDeepSpeed / kNormalCorrection * tick_; }
   bool pressesWhereItOverlaps() const {
     for (int n = 0; n < island_.contacts; ++n) {
@@ -132,8 +132,8 @@ class IslandSolve {
     return true;
   }
 
-  // What friction jams, or holds where it grazes an edge, has an answer if contacts only stop what closes: the overlap
-  // stays for as long as it sticks. Walls that close have none: there pushes keep the thing in the middle.
+  // A body that friction jams, or holds where it grazes an edge, has an answer if contacts only stop what closes: the
+  // overlap stays for as long as it sticks. Walls that close have none: there pushes keep the thing in the middle.
   void solveWithoutPushes() {
     const SolveResult pushed = island_.result;
     std::copy(island_.r, island_.r + island_.rows, memory_.kept_r.begin());

@@ -1,4 +1,4 @@
-// A ball that friction jams between two walls, pressed some micrometres into both. To push it out it would have to slide
+// A ball that friction jams between two walls, pressed some micrometres into both. To get out it would have to slide
 // up, and no impulse makes it: the harder the walls push, the more friction holds.
 #include <gtest/gtest.h>
 
