@@ -217,8 +217,10 @@ class BiasFit {
 
 // By how much contacts on what turns may contradict each other: a tick's chord is shorter than its arc [m/s].
 double chordError(double h, const Motion& m, const Vec3& arm_W) {
-  constexpr double kChord = 1.0 / 24;  // sin(x / 2) = x / 2 (1 - x^2 / 24 + ..)
-  return kChord * h * h * m.w_W.squaredNorm() * (m.v_W + m.w_W.cross(arm_W)).norm();
+  constexpr double kChord = 1.0 / 24;   // sin(x / 2) = x / 2 (1 - x^2 / 24 + ..)
+  constexpr double kLargestTurn = 0.1;  // [rad], chosen: beyond, more than a chord is wrong
+  const double turn2 = h * h * m.w_W.squaredNorm();
+  return turn2 <= kLargestTurn * kLargestTurn ? kChord * turn2 * (m.v_W + m.w_W.cross(arm_W)).norm() : 0;
 }
 
 double largestChordError(double h, std::span<const int> order, const std::vector<Contact>& contacts) {
