@@ -116,7 +116,7 @@ class IslandSolve {
 
   bool pushesInVain() const {
     return island_.contacts <= kFewContacts && scratch_.h > 0 && !island_.result.converged &&
-           memory_.operations_left >= 0 && (island_.contacts == 1 || pushesLittle());
+           island_.result.give == 0 && memory_.operations_left >= 0 && (island_.contacts == 1 || pushesLittle());
   }
   bool pushesLittle() const {
     const auto is_little = [&](int i) { return isLittle(scratch_.contacts[static_cast<std::size_t>(i)].phi); };
