@@ -38,6 +38,7 @@ TEST(Stress, WorldsThatOnceFailedHold) {
     run("stress/inertia", seed);
   for (const std::uint64_t seed : {127, 475, 493, 725, 900, 5707}) run("stress/spin", seed);
   run("stress/redundant", 157);
+  run("stress/joints", 2511);  // a whirling tree was flung 142 m
   for (const std::uint64_t seed : {212, 409, 522, 740, 911, 5511, 7757}) run("stress/overlap", seed);
 }
 
