@@ -65,8 +65,8 @@ bool scaleDown(double square, double most, std::span<double> u) {
 
 }  // namespace
 
-void limitFreeCourse(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
-                     std::span<const double> u, double h, TreeCourse& course) {
+void noteMost(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+              std::span<const double> u, double h, TreeCourse& course) {
   std::vector<double>& M = course.stage_factor.entries;
   placeLinks(tree, base.start, q, course.stage);
   fillInertia(tree, course.stage, course.composite, M);
@@ -75,7 +75,6 @@ void limitFreeCourse(const TreeModel& tree, const BaseCourse& base, const TreePu
   growCoordinates(tree, q, course.step, course.q);
   most += fillImpulses(tree, base, push, q, h, course);
   fillInertia(tree, course.stage, course.composite, M);
-  const double free2 = squareIn(tree, M, course.u_free);
   factorise(tree, course.stage_factor);
   double impulse2 = 0;
   course.slope = course.step;
@@ -83,7 +82,14 @@ void limitFreeCourse(const TreeModel& tree, const BaseCourse& base, const TreePu
   for (std::size_t c = 0; c < u.size(); ++c) impulse2 += course.step[c] * course.slope[c];
   most += std::sqrt(std::max(impulse2, 0.0));
   course.most = most * most;
-  scaleDown(free2, course.most, course.u_free);
+}
+
+void limitFreeCourse(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                     std::span<const double> u, double h, TreeCourse& course) {
+  noteMost(tree, base, push, q, u, h, course);
+  std::vector<double>& M = course.stage_factor.entries;
+  fillInertia(tree, course.stage, course.composite, M);
+  scaleDown(squareIn(tree, M, course.u_free), course.most, course.u_free);
   for (std::size_t c = 0; c < u.size(); ++c) course.way_free[c] = 0.5 * h * (u[c] + course.u_free[c]);
 }
 

@@ -12,6 +12,10 @@
 
 namespace pincer::engine {
 
+// After predictTree: N^2 into course.most.
+void noteMost(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+              std::span<const double> u, double h, TreeCourse& course);
+
 // After predictTree: keeps the rates at the end of the free course within N, its way within that of their mean with
 // those at the start, and N^2 in course.most.
 void limitFreeCourse(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,

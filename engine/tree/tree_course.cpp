@@ -39,6 +39,7 @@ bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& pus
   if (!tree.loops.empty()) fillLoops(tree, base, course.mid, course.loop_rows);
   std::fill(course.step.begin(), course.step.end(), 0.0);
   bool are_soft = true, is_factorised = false;
+  course.phase2 = 0;
   forEachElement(tree, push, course.mid, q, course, [&](const Element& element, ElementCourse& out) {
     if (!is_factorised) factoriseClosed(tree, course.loop_rows, course.stage_factor);
     is_factorised = true;
@@ -49,6 +50,7 @@ bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& pus
     out.least_inertia = leastInertia(tree, element.c, course);
     out.soft = isSoft(tick.k, tick.d, out.least_inertia, h);
     are_soft = are_soft && out.soft;
+    course.phase2 = std::max(course.phase2, h * h * tick.k / out.least_inertia);
     out.implied = out.soft ? softLaw(tick) : stiffLaw(tick, out.least_inertia);
     addSquare(tree, element.c, out.implied.mass, course.factor.entries);
     for (const ColumnShare& c : element.c) course.step[slot(c.column)] += c.share * out.implied.impulse;
@@ -126,7 +128,9 @@ void lookAt(const TreeModel& tree, const TreeBase& base, const TreePush& push, d
   });
   fillInertia(tree, course.stage, course.composite, course.stage_factor.entries);
   if (!tree.loops.empty()) fillLoops(tree, base, course.stage, course.loop_rows);
-  if (!factoriseClosed(tree, course.loop_rows, course.stage_factor)) course.sound = false;
+  const bool is_positive = tree.loops.empty() ? factorise(tree, course.stage_factor, push.locked)
+                                              : factoriseClosed(tree, course.loop_rows, course.stage_factor);
+  course.sound = course.sound && is_positive;
   solve(tree, course.stage_factor, course.slope);
   if (tree.loops.empty()) return;
   std::fill(course.loop_rows.want.begin(), course.loop_rows.want.end(), 0.0);
@@ -148,7 +152,7 @@ void stepRates(const TreeModel& tree, std::span<const double> step, std::span<co
   }
 }
 
-// Steps of the free course that show how it turns. The base's middle is known,
+// Steps of the free course that show how it turns and swings. The base's middle is known,
 // no other places between its start and end.
 int fineSteps(const BaseCourse& base, double h, const TreeCourse& course) {
   constexpr int kMostSteps = 4;  // of Runge and Kutta's method in a tick, at most
@@ -156,8 +160,9 @@ int fineSteps(const BaseCourse& base, double h, const TreeCourse& course) {
   if (!stands(base.start.motion) || !stands(base.end.motion)) return 1;
   double rate2 = 0;
   for (const LinkPlace& link : course.mid.links) rate2 = std::max(rate2, link.motion.w_W.squaredNorm());
+  const double size2 = std::max(h * h * rate2 / (kFineTurn * kFineTurn), course.phase2 / (kFinePhase * kFinePhase));
   int steps = 1;
-  while (steps < kMostSteps && h * h * rate2 > steps * steps * kFineTurn * kFineTurn) steps *= 2;
+  while (steps < kMostSteps && size2 > steps * steps) steps *= 2;
   return steps;
 }
 
@@ -182,14 +187,6 @@ void stepByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreeP
       course.u[c] = course.old_u[c] + part * kShares[k + 1] * course.slope[c];
     }
   }
-}
-
-void goByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
-                    std::span<const double> u, double h, TreeCourse& course) {
-  std::fill(course.way_free.begin(), course.way_free.end(), 0.0);
-  std::copy(u.begin(), u.end(), course.u_free.begin());
-  const int steps = fineSteps(base, h, course);
-  for (int step = 0; step < steps; ++step) stepByRungeKutta(tree, base, push, q, h, step, steps, course);
 }
 
 }  // namespace
@@ -223,6 +220,15 @@ TreeCourse::TreeCourse(const TreeModel& tree)
   shares.reserve(longest);
 }
 
+void goByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                    std::span<const double> u, double h, TreeCourse& course) {
+  course.fine = true;
+  std::fill(course.way_free.begin(), course.way_free.end(), 0.0);
+  std::copy(u.begin(), u.end(), course.u_free.begin());
+  const int steps = fineSteps(base, h, course);
+  for (int step = 0; step < steps; ++step) stepByRungeKutta(tree, base, push, q, h, step, steps, course);
+}
+
 void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
                  std::span<const double> u, double h, TreeCourse& course) {
   PINCER_ASSERT(h > 0 && push.drives.size() == tree.drives.size());
@@ -230,9 +236,9 @@ void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& 
   growCoordinates(tree, q, course.step, course.q);
   placeLinks(tree, base.mid, course.q, course.mid);
   moveLinks(tree, base.mid, course.q, u, course.mid);
-  const bool are_soft = fillMiddle(tree, base.mid, push, q, u, h, course);
-  course.fine = are_soft && push.may_be_fine;
-  if (course.fine) {
+  course.soft = fillMiddle(tree, base.mid, push, q, u, h, course);
+  course.fine = false;
+  if (course.soft && push.may_be_fine) {
     goByRungeKutta(tree, base, push, q, u, h, course);
   } else {
     goByTheMiddle(tree, base, push, u, h, course);

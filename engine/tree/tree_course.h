@@ -7,9 +7,9 @@
 // tau of what is constant. Loops are closed in all of these (loop_closure.h). Of a tree that contacts press C is that
 // of u: a is far from how it moves, and a grasp at rest would feel forces of a motion that isn't there.
 //
-// A tree that nothing else can push goes by Runge and Kutta's method of 4th order where all of those are soft (balls
+// A tree that nothing else pushes goes by Runge and Kutta's method of 4th order where all of those are soft (balls
 // by exponentials: H. Munthe-Kaas, Appl. Numer. Math. 29 (1999) 115-127); on a base at rest in up to four steps, if a
-// link turns by more than kFineTurn in one.
+// link turns by more than kFineTurn in one, or a spring swings by more than kFinePhase.
 #pragma once
 #include <span>
 #include <vector>
@@ -29,6 +29,7 @@ struct DriveTick {
 };
 
 constexpr double kFineTurn = 0.01;  // [rad]: the error goes with the fifth power
+constexpr double kFinePhase = 0.1;  // of 2 pi per period: a step takes phase^6/144 of a swing
 
 // Loads on a tree.
 struct TreePush {
@@ -58,6 +59,8 @@ struct TreeCourse {
   explicit TreeCourse(const TreeModel& tree);
 
   bool sound = true;                           // M^ was positive definite
+  bool soft = true;                            // all springs and drives are
+  double phase2 = 0;                           // the most of h^2 k/m among them
   bool fine = false;                           // by Runge and Kutta
   bool rough = false;                          // the middle doesn't show how it turns: speed_limit.h
   double most = 0;                             // N^2 there
@@ -81,6 +84,10 @@ struct TreeCourse {
 // The free course of a tree that is at q (q_count) and goes by u (columns). Allocates nothing. h > 0.
 void predictTree(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
                  std::span<const double> u, double h, TreeCourse& course);
+
+// The free course by Runge and Kutta, after predictTree, where all is soft. Locked columns are at rest.
+void goByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> q,
+                    std::span<const double> u, double h, TreeCourse& course);
 
 // Motions at the end of the free course as contacts in the middle see them, in `course.end`:
 //

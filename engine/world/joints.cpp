@@ -66,8 +66,8 @@ class RowWriter {
         b_(sideOf(moment, joint.b, joint.X_BJ)),
         R_WJ_(b_.X_WJ.q.toRotationMatrix()),
         group_(group) {
-    // A slider's impulses act where J of a has slid to, on both sides: the arm of b grows by the way.
-    if (joint.kind == JointKind::kSlider) b_.arm_W += a_.X_WJ.p - b_.X_WJ.p;
+    // Impulses act where J of a is on both sides, slid away or missed by what the middle misses: none turns the whole.
+    b_.arm_W += a_.X_WJ.p - b_.X_WJ.p;
   }
 
   const Vec3& armOfA() const { return a_.arm_W; }
@@ -248,9 +248,11 @@ void gatherJointImpulses(const WorldModel& model, WorldScratch& scratch) {
       continue;
     }
     std::fill(group.lambda.begin(), group.lambda.end(), 0.0);
+    group.touched = false;
     for (const int body : model.joint_groups[n].bodies) {
       const BodyScratch& s = scratch.bodies[body];
       if (!s.touched) continue;
+      group.touched = true;
       const Vec3 mlin = model.bodies[body].inverse_mass * s.impulse_W, mang = s.inverse_inertia_W * s.angular_impulse_W;
       for (std::size_t k = 0; k < group.rows.size(); ++k) group.lambda[k] += response(group.rows[k], body, mlin, mang);
     }
@@ -266,6 +268,65 @@ void gatherJointImpulses(const WorldModel& model, WorldScratch& scratch) {
   }
 }
 
+namespace {
+
+// Newton's method onto the joints; returns the angular momentum that moving the bodies adds.
+Vec3 settlePositions(const WorldModel& model, const JointGroup& g, const JointMoment& moment, WorldState& state,
+                     WorldScratch& scratch, JointGroupScratch& group) {
+  Vec3 added_W = Vec3::Zero();
+  for (int pass = 0; pass < kSettlings; ++pass) {
+    writeGroup(model, g, moment, group);
+    factorise(model, moment, group);
+    for (std::size_t k = 0; k < group.rows.size(); ++k) group.lambda[k] = group.rows[k].miss;
+    solve(group);
+    forEachImpulse(model, group, [&](int body, const Vec3& linear_W, const Vec3& angular_W) {
+      BodyState& s = state.bodies[body];
+      s.X_WI.p += model.bodies[body].inverse_mass * linear_W;
+      s.X_WI.q = (quatFromRotationVector(scratch.bodies[body].inverse_inertia_W * angular_W) * s.X_WI.q).normalized();
+      added_W += linear_W.cross(s.v_W);
+    });
+  }
+  for (const int body : g.bodies) {
+    if (model.bodies[body].dynamic)
+      scratch.bodies[body].inverse_inertia_W = inverseInertia(model.bodies[body].rotation, state.bodies[body].X_WI.q);
+  }
+  return added_W;
+}
+
+// Nothing but its own joints pushes on it.
+bool isFree(const WorldModel& model, const JointGroup& g, const JointGroupScratch& group) {
+  const auto moves = [&](int body) { return body >= 0 && model.bodies[body].dynamic; };
+  return !group.touched && std::all_of(model.joints.begin() + g.first, model.joints.begin() + g.first + g.count,
+                                       [&](const JointModel& joint) { return moves(joint.a) && moves(joint.b); });
+}
+
+// Turns the whole group, as if it were rigid, by what gives it this angular momentum.
+void turnGroup(const WorldModel& model, const JointGroup& g, const Vec3& added_W, WorldState& state) {
+  double mass = 0;
+  Vec3 sum_W = Vec3::Zero();
+  for (const int body : g.bodies) {
+    mass += model.bodies[body].mass;
+    sum_W += model.bodies[body].mass * state.bodies[body].X_WI.p;
+  }
+  const Vec3 centre_W = sum_W / mass;
+  Mat3 inertia_W = Mat3::Zero();
+  for (const int body : g.bodies) {
+    const Vec3 arm_W = state.bodies[body].X_WI.p - centre_W;
+    const Mat3 R_WI = state.bodies[body].X_WI.q.toRotationMatrix();
+    inertia_W += R_WI * model.bodies[body].moments.asDiagonal() * R_WI.transpose() +
+                 model.bodies[body].mass * (arm_W.squaredNorm() * Mat3::Identity() - arm_W * arm_W.transpose());
+  }
+  const Vec3 w_W = inertia_W.inverse() * added_W;
+  for (const int body : g.bodies) {
+    BodyState& s = state.bodies[body];
+    const Vec3 own_I = s.X_WI.q.conjugate() * w_W;
+    s.v_W += w_W.cross(s.X_WI.p - centre_W);
+    s.L_W += s.X_WI.q * model.bodies[body].moments.cwiseProduct(own_I);
+  }
+}
+
+}  // namespace
+
 void settleJoints(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
   const EndOfTick moment(state, scratch);
   const auto motion = [&](int body) {
@@ -273,25 +334,12 @@ void settleJoints(const WorldModel& model, WorldState& state, WorldScratch& scra
     return Motion{state.bodies[body].v_W, bodyAngularVelocity(model, state, body)};
   };
   for (std::size_t n = 0; n < model.joint_groups.size(); ++n) {
-    if (model.joint_groups[n].is_held_body) continue;
+    const JointGroup& g = model.joint_groups[n];
+    if (g.is_held_body) continue;
     JointGroupScratch& group = scratch.joint_groups[n];
-    for (int pass = 0; pass < kSettlings; ++pass) {
-      writeGroup(model, model.joint_groups[n], moment, group);
-      factorise(model, moment, group);
-      for (std::size_t k = 0; k < group.rows.size(); ++k) group.lambda[k] = group.rows[k].miss;
-      solve(group);
-      forEachImpulse(model, group, [&](int body, const Vec3& linear_W, const Vec3& angular_W) {
-        Pose& X = state.bodies[body].X_WI;
-        X.p += model.bodies[body].inverse_mass * linear_W;
-        X.q = (quatFromRotationVector(scratch.bodies[body].inverse_inertia_W * angular_W) * X.q).normalized();
-      });
-    }
-    for (const int body : model.joint_groups[n].bodies) {
-      if (model.bodies[body].dynamic) {
-        scratch.bodies[body].inverse_inertia_W = inverseInertia(model.bodies[body].rotation, state.bodies[body].X_WI.q);
-      }
-    }
-    writeGroup(model, model.joint_groups[n], moment, group);
+    const Vec3 added_W = settlePositions(model, g, moment, state, scratch, group);
+    if (isFree(model, g, group)) turnGroup(model, g, -added_W, state);
+    writeGroup(model, g, moment, group);
     factorise(model, moment, group);
     for (std::size_t k = 0; k < group.rows.size(); ++k) {
       group.lambda[k] = rate(group.rows[k], motion(group.rows[k].a), motion(group.rows[k].b));

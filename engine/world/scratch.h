@@ -102,6 +102,7 @@ struct JointGroupScratch {
   std::vector<double> factor;  // F: per body a 6 x kMoverFreedoms block, column-major
   bool sound = true;           // A could be factorised
   bool may_touch = false;      // something can touch one of its bodies, so that F is needed
+  bool touched = false;        // something pushed on one of its bodies in this part of the tick
   HeldScratch held;            // of a group that is a held body, instead of rows, A, lambda
 };
 

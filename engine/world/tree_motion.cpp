@@ -10,6 +10,7 @@
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/tree/speed_limit.h"
+#include "pincer/engine/world/fine_course.h"
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/rest.h"
 
@@ -110,17 +111,27 @@ bool movesAlone(const TreeModel& tree) {
   });
 }
 
-// True if a hinge, a ball or a link turns so far in this part of the tick that its middle doesn't show how it goes.
-bool turnsFar(const TreeModel& tree, const TreeScratch& s, std::span<const double> u, double h) {
-  constexpr double kFar = 0.5;  // [rad]
+constexpr double kFar = 0.5;   // [rad]: the middle of a part of a tick doesn't show how what turns so far goes
+constexpr double kFast = 0.1;  // [rad]: it does, but stops that press would add energy to what they turn
+
+// True if a hinge, a ball or a link turns by more than `most` in this part of the tick.
+bool turnsBy(double most, const TreeModel& tree, const TreeScratch& s, std::span<const double> u, double h) {
   for (const TreeCoordinate& own : tree.coordinates) {
     if (tree.links[own.link].kind == JointKind::kSlider) continue;
     const double start = u[own.column], end = s.course.u_free[own.column] + s.gained[own.column];
-    if (!(h * std::max(std::abs(start), std::abs(end)) <= kFar)) return true;
+    if (!(h * std::max(std::abs(start), std::abs(end)) <= most)) return true;
   }
-  const double most2 = kFar * kFar / (h * h);
+  const double most2 = most * most / (h * h);
   return std::any_of(s.course.mid.links.begin(), s.course.mid.links.end(),
                      [most2](const LinkPlace& link) { return link.motion.w_W.squaredNorm() > most2; });
+}
+
+// True if nothing but its own stops, brakes and drives pushes on it, and it turns fast: then their impulses give it no
+// energy, but the turn of their directions within the tick would.
+bool isWhirledByStops(const TreeModel& tree, const TreeScratch& s, std::span<const double> u, double h) {
+  const auto pushes = [](char pressed) { return pressed != 0; };
+  return s.touched && !s.course.fine && std::none_of(s.pressed.begin(), s.pressed.end(), pushes) &&
+         turnsBy(kFast, tree, s, u, h);
 }
 
 // The most that drives at their limits add to a tree's speed in the metric of M.
@@ -130,16 +141,6 @@ double givenByDrives(const WorldScratch& scratch, int tree) {
     if (row.tree == tree && row.kind == JointRowKind::kDrive && row.wanted) sum += row.limit * std::sqrt(row.mobility);
   }
   return sum;
-}
-
-TreePush pushOn(const WorldScratch& scratch, const TreeModel& tree, const TreeScratch& s) {
-  return {.gravity_W = scratch.gravity_W,
-          .forces = scratch.forces.empty() ? std::span<const LinkForce>{} : std::span<const LinkForce>(s.forces),
-          .drives = s.drives,
-          .constant = s.constant,
-          .may_be_fine = movesAlone(tree),
-          .pressed = s.was_pressed,
-          .locked = s.has_locked ? std::span<const char>(s.locked) : std::span<const char>{}};
 }
 
 bool isSlow(const Motion& m, double reach, double limit) {
@@ -182,10 +183,20 @@ void notePressed(const WorldModel& model, const WorldState& state, WorldScratch&
 
 TreeScratch::TreeScratch(const TreeModel& tree)
     : drives(tree.drives.size()), forces(tree.links.size()), constant(tree.coordinates.size()), course(tree) {
-  for (std::vector<double>* columns : {&impulse, &gained, &row, &held})
+  for (std::vector<double>* columns : {&impulse, &gained, &row, &held, &old_free, &old_way})
     columns->resize(static_cast<std::size_t>(tree.columnCount()));
   for (std::vector<char>* columns : {&locked, &pressed}) columns->resize(static_cast<std::size_t>(tree.columnCount()));
   q.resize(static_cast<std::size_t>(tree.q_count));
+}
+
+TreePush pushOn(const WorldScratch& scratch, const TreeModel& tree, const TreeScratch& s) {
+  return {.gravity_W = scratch.gravity_W,
+          .forces = scratch.forces.empty() ? std::span<const LinkForce>{} : std::span<const LinkForce>(s.forces),
+          .drives = s.drives,
+          .constant = s.constant,
+          .may_be_fine = movesAlone(tree),
+          .pressed = s.was_pressed,
+          .locked = s.has_locked ? std::span<const char>(s.locked) : std::span<const char>{}};
 }
 
 void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
@@ -199,7 +210,7 @@ void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch
     const std::span<const double> q = treeCoordinates(tree, state), u = treeRates(tree, state);
     predictTree(tree, s.base, push, q, u, scratch.h, s.course);
     std::fill(s.gained.begin(), s.gained.end(), 0.0);
-    s.course.rough = turnsFar(tree, s, u, scratch.h);
+    s.course.rough = turnsBy(kFar, tree, s, u, scratch.h);
     if (s.course.rough) limitFreeCourse(tree, s.base, push, q, u, scratch.h, s.course);
     s.touched = s.closing = false;
     if (tree.may_touch) moveFreeEnd(tree, s.base, q, u, scratch.h, s.course);
@@ -259,14 +270,18 @@ void gatherTrees(const WorldModel& model, WorldScratch& scratch) {
 }
 
 void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scratch) {
+  noteNearTrees(model, scratch);
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
     const TreeModel& tree = model.trees[t];
     TreeScratch& s = scratch.trees[t];
     const std::span<double> q = treeCoordinates(tree, state), u = treeRates(tree, state);
-    const double given = s.course.rough ? givenByDrives(scratch, static_cast<int>(t)) : 0;
+    refineCourse(model, state, scratch, static_cast<int>(t));
+    const bool is_limited = s.course.rough || isWhirledByStops(tree, s, u, scratch.h);
+    if (is_limited && !s.course.rough) noteMost(tree, s.base, pushOn(scratch, tree, s), q, u, scratch.h, s.course);
+    const double given = is_limited ? givenByDrives(scratch, static_cast<int>(t)) : 0;
     if (s.course.rough) limitGained(tree, given, s.course, s.gained);
     advanceTree(tree, s.base.end, {s.gained, scratch.h, s.closing}, scratch.h, q, u, s.course, s.q, s.row);
-    if (s.course.rough) limitRates(tree, s.base.end, pushOn(scratch, tree, s), s.q, given, s.course, s.row);
+    if (is_limited) limitRates(tree, s.base.end, pushOn(scratch, tree, s), s.q, given, s.course, s.row);
     s.rests = comesToRest(model, scratch, tree, s);
     if (s.rests) {
       std::fill(u.begin(), u.end(), 0.0);
@@ -291,7 +306,7 @@ void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scra
 
 bool treesTurnFar(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (turnsFar(model.trees[t], scratch.trees[t], treeRates(model.trees[t], state), scratch.h)) return true;
+    if (turnsBy(kFar, model.trees[t], scratch.trees[t], treeRates(model.trees[t], state), scratch.h)) return true;
   }
   return false;
 }

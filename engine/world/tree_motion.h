@@ -13,6 +13,9 @@
 
 namespace pincer::engine {
 
+// All that acts on a tree in this part of the tick but contacts and joints' rows.
+TreePush pushOn(const WorldScratch& scratch, const TreeModel& tree, const TreeScratch& s);
+
 // Free courses; links' places in the middle and motions. After drives and constant forces are set
 // (joint_rows.h) and driven bodies are predicted.
 void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch& scratch);

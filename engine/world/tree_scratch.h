@@ -25,10 +25,11 @@ struct TreeScratch {
   std::vector<char> locked, pressed;
   bool has_locked = false;
   std::vector<double> held;
+  bool is_near = false;      // some contact of a link or a stop was looked at, whether it pushes or not
   bool was_pressed = false;  // something pushed on a link or a joint in the last part of a tick
   bool rests = false;        // nothing of it changed in this part of the tick
   // Between uses.
-  std::vector<double> row, q;
+  std::vector<double> row, q, old_free, old_way;
 };
 
 // A tree's share of the state.

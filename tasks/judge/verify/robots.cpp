@@ -1,7 +1,6 @@
 // Trees as robots are: their equations as a whole, free flight, a jaw on a linkage.
 //
-//   flight         two hinged bodies on which nothing acts: momentum; angular momentum and energy to
-//                  2nd order in the tick
+//   flight         two hinged bodies on which nothing acts: both momenta; energy to 2nd order in the tick
 //   equations      accelerations of random trees against Lagrange's equations, with the mass matrix as the sum of
 //                  J^T I J over the links and its slopes by differences
 //   linkage-grip   a jaw on four bars with a spring between two of them presses on a sprung plate: virtual work
@@ -69,14 +68,15 @@ Drift driftOf(double h, double seconds, MeasureContext& context) {
   return drift;
 }
 
-// Projection onto the joint keeps momentum, and angular momentum to 2nd order in the tick.
+// Impulses of joints act at one point of both bodies, and what moving these onto the joint turns is given back: both
+// momenta are kept but for round-off, which 60,000 ticks of some ulps add up to some 1e-12.
 std::vector<Record> flight(MeasureContext& context) {
   const Drift whole = driftOf(1e-3, 60, context), coarse = driftOf(2e-3, 10, context),
               fine = driftOf(1e-3, 10, context);
   return {atMost("momentum in 60 s, drift over itself", whole.linear, "-", 1e-12),
-          atMost("angular momentum in 60 s, drift over itself", whole.angular, "-", 2e-5),
+          atMost("angular momentum in 60 s, drift over itself", whole.angular, "-", 1e-11),
           atMost("energy in 60 s, drift over itself", whole.energy, "-", 4e-5),
-          atLeast("angular momentum at 2 ms over 1 ms, drifts", coarse.angular / fine.angular, "-", 3.5),
+          atLeast("energy at 2 ms over 1 ms, drifts", coarse.energy / fine.energy, "-", 3.5),
           exactly("flagged ticks", whole.flagged, "-", 0)};
 }
 

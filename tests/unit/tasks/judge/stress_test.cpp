@@ -39,6 +39,9 @@ TEST(Stress, WorldsThatOnceFailedHold) {
   for (const std::uint64_t seed : {127, 475, 493, 725, 900, 5707}) run("stress/spin", seed);
   run("stress/redundant", 157);
   run("stress/joints", 2511);  // a whirling tree was flung 142 m
+  run("stress/joints", 7272);  // another, by stops that press while it whirls
+  run("stress/joints", 457);   // a spring seemed to gain energy beside a brake that holds
+  run("stress/joints", 1024);  // and against one that slides
   for (const std::uint64_t seed : {212, 409, 522, 740, 911, 5511, 7757}) run("stress/overlap", seed);
 }
 
