@@ -11,8 +11,9 @@
 //   theta  1/2, the mean; more where k alone is so stiff that e would ring: what e and h l'
 //          were off by falls by 1/sqrt 3 per tick then
 //
-// Both let rest what rests where k e is the load. Soft: order 4 in k, 2 in d; L. Fox, E. T. Goodwin, Proc. Camb. Phil.
-// Soc. 45 (1949) 373-388. Stiff: needs no mass; order 2 where damping outweighs inertia.
+// All let rest what rests where k e is the load. Soft: order 4 in k, 2 in d; L. Fox, E. T. Goodwin, Proc. Camb. Phil.
+// Soc. 45 (1949) 373-388. Beside stiff elements of a tree m^ = k h^2/4 + d h/2, of order 2, which keeps the energy.
+// Stiff: needs no mass; order 2 where damping outweighs inertia.
 #pragma once
 
 namespace pincer::engine {
@@ -30,6 +31,8 @@ struct ImpliedInertia {
 
 bool isSoft(double k, double d, double m, double h);
 ImpliedInertia softLaw(const ElementTick& t);
+// What makes m^ of a soft spring that of the force in the middle: h^2 k/4 less h^2 k/12.
+inline double middleMass(double k, double h) { return k * h * h / 6; }
 ImpliedInertia stiffLaw(const ElementTick& t, double m);
 
 }  // namespace pincer::engine

@@ -30,6 +30,17 @@ double leastInertia(const TreeModel& tree, std::span<const ColumnShare> c, TreeC
   return 1 / sum;
 }
 
+// Soft springs beside stiff elements give the force of their middles: order 2, which keeps their energy. The rates
+// of order 4 show a swing of it, which only Runge and Kutta's method for trees that are all soft doesn't.
+void goByMiddles(const TreeModel& tree, const TreePush& push, std::span<const double> q, double h, TreeCourse& course) {
+  forEachElement(tree, push, course.mid, q, course, [&](const Element& element, ElementCourse& out) {
+    if (!out.soft) return;
+    const double more = middleMass(element.law.stiffness, h);
+    out.implied.mass += more;
+    addSquare(tree, element.c, more, course.factor.entries);
+  });
+}
+
 // M^ and its factor at q_m, the elements' laws from where the tick starts, and their impulses by
 // columns in course.step. True if all are soft.
 bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& push, std::span<const double> q,
@@ -55,6 +66,7 @@ bool fillMiddle(const TreeModel& tree, const TreeBase& base, const TreePush& pus
     addSquare(tree, element.c, out.implied.mass, course.factor.entries);
     for (const ColumnShare& c : element.c) course.step[slot(c.column)] += c.share * out.implied.impulse;
   });
+  if (!are_soft) goByMiddles(tree, push, q, h, course);
   if (!push.locked.empty()) course.inertia = course.factor.entries;
   course.sound = tree.loops.empty() ? factorise(tree, course.factor, push.locked)
                                     : factoriseClosed(tree, course.loop_rows, course.factor);

@@ -35,11 +35,10 @@ bool slidesThroughout(const TreeModel& tree, const TreeScratch& s, std::span<con
          start * r <= 0;
 }
 
-// A brake that holds what stood at the start with so little of its force that it does so all the time.
+// A brake that holds what stood at the start.
 bool holdsThroughout(const TreeModel& tree, std::span<const double> u, const JointRowScratch& row) {
-  constexpr double kShare = 0.5;
   return !tree.has_couplings && tree.loops.empty() && u[tree.coordinates[row.element].column] == 0 &&
-         std::abs(row.impulse_W.x()) <= kShare * row.limit;
+         std::abs(row.impulse_W.x()) < (1 - kBrakeRoundOff) * row.limit;
 }
 
 bool goesFree(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int t) {
