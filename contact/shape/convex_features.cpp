@@ -241,14 +241,37 @@ Vec3 inset(const Convex& c, const Vec3& d) {
   return corners[best];
 }
 
+// Of a face with very many corners every n-th is taken.
+void addFace(const Convex& c, const Polytope::Face& face, Facet& f) {
+  const Polytope& hull = *c.hull;
+  f.n = face.n;
+  const std::span<const int> corners = hull.cornersOf(face), edges = hull.edgesOf(face);
+  const std::size_t stride = (corners.size() + Facet::kMost - 1) / Facet::kMost;
+  for (std::size_t k = 0; k < corners.size(); k += stride) f.add(vertexOf(c, corners[k]), corners[k], edges[k]);
+}
+
+// The face around a vertex whose normal is d, to round-off; null if there is none.
+const Polytope::Face* faceAlong(const Polytope& hull, std::span<const int> edges_here, const Vec3& d, double length) {
+  constexpr double kAlong = 1 - 1e-13;  // cosine: then d is across all of the face's edges, see facet
+  for (const int e : edges_here) {
+    const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
+    for (const int i : {edge.left, edge.right}) {
+      const Polytope::Face& face = hull.faces()[static_cast<std::size_t>(i)];
+      if (d.dot(face.n) >= kAlong * length) return &face;
+    }
+  }
+  return nullptr;
+}
+
 // The face around the extreme vertex that faces d most; but where d is across an edge, one of the two that the edge
-// joins. Of a face with very many corners every n-th is taken.
+// joins.
 void facet(const Convex& c, const Vec3& d, Facet& f) {
   constexpr double kAcross = 1e-6;  // cosine
   const Polytope& hull = *c.hull;
   const int vertex = hull.extremeVertex(d);
   const double length = d.norm();
   const std::span<const int> edges_here = hull.edgesAt(vertex);
+  if (const Polytope::Face* face = faceAlong(hull, edges_here, d, length)) return addFace(c, *face, f);
   const auto edgeOf = [&](int e) -> const Polytope::Edge& { return hull.edges()[static_cast<std::size_t>(e)]; };
   const auto isAcross = [&](const Polytope::Edge& edge) {
     const Vec3 along = vertexOf(c, edge.to) - vertexOf(c, edge.from);
@@ -276,10 +299,7 @@ void facet(const Convex& c, const Vec3& d, Facet& f) {
     }
   }
   PINCER_ASSERT(best);  // every corner of a hull has edges
-  f.n = best->n;
-  const std::span<const int> corners = hull.cornersOf(*best), edges = hull.edgesOf(*best);
-  const std::size_t stride = (corners.size() + Facet::kMost - 1) / Facet::kMost;
-  for (std::size_t k = 0; k < corners.size(); k += stride) f.add(vertexOf(c, corners[k]), corners[k], edges[k]);
+  addFace(c, *best, f);
 }
 
 // Faces and edges around the extreme vertex.

@@ -24,14 +24,14 @@ class OverFace {
     const double plane = base.n.dot(base.corners[0].p);
     const auto seen = [&](const Vec3& p) { return base_solid.inwards(over_solid.place(p) - base_solid.p); };
     lowest_ = base.n.dot(seen(supportOf(over_solid.shape, ahead))) - plane;
+    std::array<Vec3, Facet::kMost> corners;
     for (int i = 0; i < over_.count; ++i) {
-      const Vec3 p = seen(over_.corners[static_cast<std::size_t>(i)].p);
-      const double height = heights_[static_cast<std::size_t>(i)] = base.n.dot(p) - plane;
-      const bool is_inside = isInside(p);
-      highest_ = std::max(highest_, height);
-      if (is_inside) lowest_inside_ = std::min(lowest_inside_, height);
-      all_inside_ = all_inside_ && is_inside;
+      const auto at = static_cast<std::size_t>(i);
+      corners[at] = seen(over_.corners[at].p);
+      heights_[at] = base.n.dot(corners[at]) - plane;
+      highest_ = std::max(highest_, heights_[at]);
     }
+    noteInside(corners.data());
   }
 
   // A lowest point lies over the base; or would, if the two facets share a place.
@@ -59,14 +59,25 @@ class OverFace {
  private:
   bool isLowest(double height, double size) const { return lowest_ > 0 && height - lowest_ <= kLowestRounding * size; }
 
-  bool isInside(const Vec3& p) const {
+  // Which corners are over the base; edge by edge, each of which is measured once.
+  void noteInside(const Vec3* corners) {
+    std::array<bool, Facet::kMost> is_inside;
+    std::fill(is_inside.begin(), is_inside.begin() + over_.count, true);
     const Vec3* from = &base_.corners[static_cast<std::size_t>(base_.count - 1)].p;
-    for (int i = 0; i < base_.count; ++i) {
-      const Vec3& to = base_.corners[static_cast<std::size_t>(i)].p;
-      if (!(base_.n.dot((to - *from).cross(p - *from)) >= 0)) return false;
+    for (int k = 0; k < base_.count; ++k) {
+      const Vec3& to = base_.corners[static_cast<std::size_t>(k)].p;
+      const Vec3 inwards = base_.n.cross(to - *from);
+      for (int i = 0; i < over_.count; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        is_inside[at] = is_inside[at] && inwards.dot(corners[at] - *from) >= 0;
+      }
       from = &to;
     }
-    return true;
+    for (int i = 0; i < over_.count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (is_inside[at]) lowest_inside_ = std::min(lowest_inside_, heights_[at]);
+      all_inside_ = all_inside_ && is_inside[at];
+    }
   }
 
   const PosedSolid& base_solid_;

@@ -5,6 +5,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/cone.h"
 #include "pincer/engine/solve/few_contacts.h"
+#include "pincer/engine/solve/pad_problem.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/search.h"
 #include "pincer/engine/solve/small_problem.h"
@@ -38,13 +39,11 @@ bool removeAddedEnergy(const ContactProblem& problem, double* r, const double* u
 
 void solveFew(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
               SolveResult& result) {
+  if (solvePadProblem(problem, options, scratch, r, u, result)) return;
   weighContacts(problem, scratch);
   const ContactError start = errorOf(problem, r, scratch, u);
-  const double exact = exactResidual(options.tolerance, problem.noise, referenceSpeed(problem));
-  const bool is_exact = !problem.strict || start.residual <= exact;
-  const bool rests = problem.calm && start.speed <= restErrorOf(options);
   result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};
-  if (rests || (start.residual <= options.tolerance && is_exact)) return;
+  if (isGoodStart(problem, options, start, referenceSpeed(problem))) return;
   if (!solveStuckContacts(problem, options, scratch, r, u, result))
     solveFewContacts(problem, options, start.residual, scratch, r, u, result);
 }

@@ -7,6 +7,7 @@
 #include "pincer/engine/solve/inverse3.h"
 #include "pincer/engine/solve/linear.h"
 #include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/stuck_contacts.h"
 
 namespace pincer::engine {
 
@@ -81,8 +82,7 @@ class MoverNormals {
 
   // False if it has no inverse.
   bool factorise() {
-    constexpr double kRidge = 1e-10;  // of N's diagonal: far above round-off, which it meets twice
-    const double ridge = kRidge * largest();
+    const double ridge = kStuckRidge * largest();
     for (int j = 0; j < size_; ++j) body_[(size_ + 1) * j] += ridge;
     for (int p = 0; p < points_; ++p) {
       for (int k = 0; k < 3; ++k) point_[p][4 * k] += ridge;

@@ -1,5 +1,6 @@
 #include "pincer/engine/solve/residual.h"
 
+#include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/mobility.h"
 #include "pincer/engine/solve/round_contact.h"
 
@@ -65,6 +66,12 @@ ContactError respondedError(const ContactProblem& problem, const double* r, cons
               w * r[first + kNormalRow]);
   }
   return worst.relativeTo(referenceSpeed(problem));
+}
+
+bool isGoodStart(const ContactProblem& problem, const SolverOptions& options, const ContactError& start, double speed) {
+  if (problem.calm && start.speed <= restErrorOf(options)) return true;
+  return start.residual <= options.tolerance &&
+         (!problem.strict || start.residual <= exactResidual(options.tolerance, problem.noise, speed));
 }
 
 }  // namespace pincer::engine

@@ -80,4 +80,9 @@ inline double exactResidual(double tolerance, double noise, double speed) {
   return std::max(kStrictness * tolerance, std::min(tolerance, noise / speed));
 }
 
+// True if the warm start, of the error `start`, is the answer: within the tolerance, exact where the problem is strict;
+// or what doesn't move stays so.
+//   speed  of the problem, referenceSpeed
+bool isGoodStart(const ContactProblem& problem, const SolverOptions& options, const ContactError& start, double speed);
+
 }  // namespace pincer::engine

@@ -12,11 +12,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kMostSteps = 3;          // each with a set of contacts that hold: a factorisation
-constexpr double kFrictionUsed = 0.5;  // at most, for the step to go on with its shares
 // of corners of pads that contradict each other, as turning by 5 rad/s lets them [m/s]
 constexpr double kPadGive = 1e-5;
-constexpr std::int64_t kPerContactStuck = 300, kPerMoverStuck = 200;  // multiplications of a step
 
 // Steps with a set of contacts that hold.
 class StuckSolve {
@@ -108,8 +105,8 @@ class StuckAnswer {
     const bool is_close = result.residual <= options_.tolerance;
     const double enough = (is_close ? kStrictness : 0.5) * options_.tolerance;
     solve_.holdWhatPushes();
-    while (result.iterations < kMostSteps && mayStep() && solve_.allStayAsTheyAre() && solve_.step() &&
-           solve_.holdsWith(kFrictionUsed)) {
+    while (result.iterations < kMostStuckSteps && mayStep() && solve_.allStayAsTheyAre() && solve_.step() &&
+           solve_.holdsWith(kStuckFrictionUsed)) {
       if (isSolved(enough, result)) return true;
     }
     return false;
@@ -119,7 +116,7 @@ class StuckAnswer {
   bool least(SolveResult& result) {
     solve_.holdAll();
     startFromNone();
-    while (result.iterations < kMostSteps && mayStep() && solve_.step()) {
+    while (result.iterations < kMostStuckSteps && mayStep() && solve_.step()) {
       if (solve_.letGoWhatPulls()) {
         startFromNone();
         ++result.iterations;
@@ -128,13 +125,11 @@ class StuckAnswer {
       if (!solve_.holdsWith(1)) return false;
       if (isSolved(0.5 * options_.tolerance, result)) return true;
     }
-    return result.iterations == kMostSteps && giveWay(result);
+    return result.iterations == kMostStuckSteps && giveWay(result);
   }
 
  private:
-  bool mayStep() {
-    return spend(kPerContactStuck * problem_.contactCount() + kPerMoverStuck * problem_.movers, scratch_);
-  }
+  bool mayStep() { return spend(stuckOperations(problem_), scratch_); }
   void startFromNone() {
     std::fill(r_, r_ + problem_.rowCount(), 0.0);
     errorOf(problem_, r_, scratch_, u_);

@@ -27,6 +27,16 @@
 
 namespace pincer::engine {
 
+constexpr int kMostStuckSteps = 3;          // each with a set of contacts that hold: a factorisation
+constexpr double kStuckFrictionUsed = 0.5;  // at most, for the step to go on with its shares
+constexpr double kStuckRidge = 1e-10;       // of N's diagonal: far above round-off, which it meets twice
+
+// Multiplications of a step.
+inline std::int64_t stuckOperations(const ContactProblem& problem) {
+  constexpr std::int64_t kPerContact = 300, kPerMover = 200;
+  return kPerContact * problem.contactCount() + kPerMover * problem.movers;
+}
+
 // True if the contacts stick or are open, and that solved `problem`: then r, u and `result` are those of
 // solveContacts. Else all three are as before.
 //   r       warm start, in the cones;  u  its velocities;  scratch.weight filled

@@ -20,6 +20,7 @@ const std::map<std::string, std::string> kWritesImpulses = {
     {"restsAsItIs", "the front door, where the last tick's are still right"},
     {"solveSmallProblem", "way 1: the small form, up to three contacts"},
     {"solveStuckContacts", "way 2, where all stick: one step"},
+    {"solvePadProblem", "the same step, of one body between flat pads"},
     {"solveFewContacts", "way 2: up to sixty"},
     {"solvePointProblem", "way 2, last resort of a point between walls"},
     {"searchImpulses", "way 3: many; descents, rounds and sweeps"},
