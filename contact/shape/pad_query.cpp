@@ -6,6 +6,7 @@
 #include "pincer/contact/shape/convex_features.h"
 #include "pincer/contact/shape/core_descent.h"
 #include "pincer/contact/shape/pad_contacts.h"
+#include "pincer/contact/shape/wall_line.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/contact/surface/mesh_features.h"
 #include "pincer/contact/surface/surface_net.h"
@@ -14,87 +15,6 @@ namespace pincer::contact {
 namespace {
 
 constexpr double kApartOnPad = 1e-3;  // of the pad's size: two places nearer than that are one
-
-// The straight line on a smooth mesh through a place of it, as the walls of cylinders, cones and prisms with rounded
-// edges have: along edges of triangles whose two ends have one normal, across smooth edges up to the wall's rims.
-class WallLine {
- public:
-  // through `p`, whose triangle is `t`
-  WallLine(const SurfaceNet& net, std::int32_t t, const Vec3& p, const Vec3& n) : net_(net), p_(p) {
-    const int edge = straightEdge(t);
-    if (edge < 0) return;
-    along_ = (net.vertex(t, (edge + 1) % 3) - net.vertex(t, edge)).normalized();
-    int axis = 0;
-    along_.cwiseAbs().maxCoeff(&axis);
-    if (along_[axis] < 0) along_ = -along_;  // one way on all triangles of a wall
-    across_ = n.cross(along_).normalized();
-    low_ = -follow(t, -1);
-    high_ = follow(t, 1);
-  }
-  bool exists() const { return high_ > low_; }
-  const Vec3& along() const { return along_; }  // unit
-  // Its ends, from p along it [m].
-  double low() const { return low_; }
-  double high() const { return high_; }
-
- private:
-  static constexpr double kSame = 1e-6;  // difference of unit vectors
-
-  // The only edge of the triangle along which the surface is straight and faces one way; -1 if there is none, or three
-  // as on a flat face.
-  int straightEdge(std::int32_t t) const {
-    int found = -1;
-    for (int i = 0; i < 3; ++i) {
-      const Vec3 n = net_.normal(t, i), e = (net_.vertex(t, (i + 1) % 3) - net_.vertex(t, i)).normalized();
-      if ((net_.normal(t, (i + 1) % 3) - n).norm() > kSame || std::abs(e.dot(n)) > kSame) continue;
-      if (found >= 0) return -1;
-      found = i;
-    }
-    return found;
-  }
-
-  Vec2 seen(const Vec3& q) const { return {along_.dot(q - p_), across_.dot(q - p_)}; }
-
-  // How far the wall goes on that way [m]. A line along an edge is looked for just inside of its triangle.
-  double follow(std::int32_t t, double sign) const {
-    constexpr int kMostTriangles = 64;  // chosen: bounds the work; a wall of more ends there
-    constexpr double kInside = 1e-3;    // of the triangle's width
-    double low = seen(net_.vertex(t, 0)).y(), high = low;
-    for (int i = 1; i < 3; ++i) {
-      low = std::min(low, seen(net_.vertex(t, i)).y());
-      high = std::max(high, seen(net_.vertex(t, i)).y());
-    }
-    const double y = std::clamp(0.0, low + kInside * (high - low), high - kInside * (high - low));
-    double furthest = 0;
-    int entered = -1;
-    for (int n = 0; n < kMostTriangles; ++n) {
-      int left = -1;
-      double way = -kInfinity;
-      for (int i = 0; i < 3; ++i) {
-        const Vec2 from = seen(net_.vertex(t, i)), to = seen(net_.vertex(t, (i + 1) % 3));
-        if (i == entered || (from.y() < y) == (to.y() < y)) continue;
-        const double x = sign * (from.x() + (y - from.y()) / (to.y() - from.y()) * (to.x() - from.x()));
-        if (x > way) way = x, left = i;
-      }
-      if (left < 0) break;
-      furthest = way;
-      if (net_.isSharp(t, left)) break;
-      const Neighbour next = net_.neighbour(t, left);
-      const int edge = straightEdge(next.triangle);
-      if (edge < 0) break;
-      const Vec3 e = net_.vertex(next.triangle, (edge + 1) % 3) - net_.vertex(next.triangle, edge);
-      if (e.cross(along_).norm() > kSame * e.norm()) break;
-      t = next.triangle;
-      entered = next.edge;
-    }
-    return furthest;
-  }
-
-  const SurfaceNet& net_;
-  const Vec3 p_;
-  Vec3 along_ = Vec3::UnitZ(), across_ = Vec3::UnitX();
-  double low_ = 0, high_ = 0;
-};
 
 class PadQuery {
  public:
@@ -173,15 +93,14 @@ class PadQuery {
   // The two ends of the line that a straight wall shares with the facet over it: of the wall, where it ends under the
   // facet, else of the facet. Their gaps are those of the facet's plane. False if there is no such wall.
   bool touchesWall(const SurfaceContact& main, FingerContacts& line) const {
-    constexpr double kFaces = 0.1;  // [rad] between the facet and the wall under it
     const std::int32_t t = slotOf(main).triangle;
     if (t < 0) return false;
     Facet facet;
     facetOf(Convex{pad_.hull}, X_BF_.q.conjugate() * -main.n_B, facet);
     const Vec3 n_B = -(X_BF_.q * facet.n);
-    if (facet.count < 3 || (n_B - main.n_B).squaredNorm() > kFaces * kFaces) return false;
-    const WallLine wall(std::get<Mesh>(shape_).surface->net(), t, main.p_BS, main.n_B);
-    if (!wall.exists()) return false;
+    if (facet.count < 3 || !faces(n_B, main.n_B)) return false;
+    const WallLine wall = wallAt(main, n_B);
+    if (!wall.exists() || !faces(n_B, wall.normal())) return false;
     double low = wall.low(), high = wall.high();
     for (int k = 0; k < facet.count; ++k) {
       const Vec3 from = cornerOf(facet, k), inwards = n_B.cross(from - cornerOf(facet, k + 1)).normalized();
@@ -204,13 +123,32 @@ class PadQuery {
     return true;
   }
 
+  static bool faces(const Vec3& facet_n_B, const Vec3& n_B) {
+    constexpr double kFaces = 0.1;  // [rad] between the facet and the wall under it
+    return (facet_n_B - n_B).squaredNorm() <= kFaces * kFaces;
+  }
+
+  // The wall at the main contact: on a rim that may be the triangle's, or that on the other side.
+  WallLine wallAt(const SurfaceContact& main, const Vec3& facet_n_B) const {
+    const SurfaceNet& net = std::get<Mesh>(shape_).surface->net();
+    const SurfaceSlot& slot = slotOf(main);
+    const WallLine wall(net, slot.triangle, main.p_BS);
+    if (wall.exists() && faces(facet_n_B, wall.normal())) return wall;
+    const std::array<double, 3> corners = {1 - slot.u - slot.v, slot.u, slot.v};
+    for (int i = 0; i < 3; ++i) {
+      if (corners[static_cast<std::size_t>((i + 2) % 3)] > kOnEdge || !net.isSharp(slot.triangle, i)) continue;
+      const Neighbour other = net.neighbour(slot.triangle, i);
+      if (other.triangle >= 0) return {net, other.triangle, main.p_BS};
+    }
+    return wall;
+  }
+
   const SurfaceSlot& slotOf(const SurfaceContact& main) const {
     return tracker_.main.ball.slots[main.feature % kMaxSurfaceContacts];
   }
 
   // Inside of a flat triangle the smooth surface has its normal: without that the others needn't be asked.
   bool mayBeFlat(const SurfaceContact& main) const {
-    constexpr double kOnEdge = 1e-3;  // barycentric
     const SurfaceSlot& slot = slotOf(main);
     if (slot.triangle < 0 || std::min({slot.u, slot.v, 1 - slot.u - slot.v}) < kOnEdge) return true;
     const MeshFeatures& features = std::get<Mesh>(shape_).surface->features();
@@ -332,6 +270,7 @@ class PadQuery {
   }
 
   static constexpr double kSameNormal = 1e-4;  // [rad]
+  static constexpr double kOnEdge = 1e-3;      // barycentric
   // features: above those of the deepest place's ball
   static constexpr std::uint32_t kFirstFoot = 16, kFirstEdge = 32, kFirstEnd = 1024;
 

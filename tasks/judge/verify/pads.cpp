@@ -249,7 +249,6 @@ std::vector<Vec2> bulging(double middle, double bulge, double half) {
 Measurement curvedOf(const char* name, const contact::TriangleMesh& mesh) {
   PadGrip grip{smooth(mesh)};
   grip.patch_radius = 0.004;
-  grip.seconds = 5;
   grip.w_W = Vec3(0, 0.3, 0);
   return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
 }

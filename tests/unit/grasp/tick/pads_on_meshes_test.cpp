@@ -91,6 +91,25 @@ TEST(PadOnMesh, StandsOnTheEndsOfAWallThatIsShorterThanThePad) {
   }
 }
 
+// The lines of a cone meet in its tip. A wall was followed along the edge beside the place, and ended where that left
+// its quad. The patches of 12 sides lean by 1e-4 where the cone's lines are level.
+TEST(PadOnMesh, StandsOnALineOfACone) {
+  for (const int sides : {12, 24}) {
+    for (const double top : {0.012, 0.016, 0.017}) {
+      const TriangleMesh upright = lathe({{0, -0.03}, {0.018, -0.03}, {top, 0.03}, {0, 0.03}}, sides);
+      const double lean = std::atan2(0.018 - top, 0.06), height = 0.5 * (0.018 + top) * std::cos(lean);
+      for (const double roll : {0.0, 0.02, 0.1, 0.2}) {
+        const Quat q = tests::about(Vec3(0, 1, 0), M_PI / 2 - lean) * tests::about(Vec3(0, 0, 1), roll);
+        const FingerContacts found = padOnTop(smooth(transformed(upright, {q, Vec3::Zero()})), height);
+        ASSERT_EQ(found.count, 2) << sides << ' ' << top << ' ' << roll;
+        EXPECT_NEAR(found.points[0].phi, found.points[1].phi, 1e-4 * 2 * kHalf) << sides << ' ' << top << ' ' << roll;
+        EXPECT_NEAR(spanOf(found).max().x(), kHalf, 1e-4) << sides << ' ' << top << ' ' << roll;
+        EXPECT_NEAR(spanOf(found).min().x(), -kHalf, 1e-4) << sides << ' ' << top << ' ' << roll;
+      }
+    }
+  }
+}
+
 TEST(PadOnMesh, TouchesABallAtOnePlace) {
   const FingerContacts found = padOnTop(smooth(geodesicSphere(0.018, 12)), 0.018);
   EXPECT_EQ(found.count, 1);
@@ -142,11 +161,11 @@ struct Creep {
   int flagged;
 };
 
-// Of a turned part 36 mm thick, about the z axis, nudged between two pads of the half width `half`.
-Creep creepBetweenPads(const std::vector<Vec2>& profile, int sides, double touch, double half, double patch_radius,
-                       const Vec3& w_W) {
+// Of a part, nudged between two pads of the half width `half` whose centres are `touch` to either side of `X_WB`.
+Creep creepBetweenPads(const contact::TriangleMesh& part, const Pose& X_WB, double touch, double half,
+                       double patch_radius, const Vec3& w_W) {
   engine::WorldBuilder builder{engine::WorldOptions{}};
-  builder.addBody({"part", contact::smooth(contact::lathe(profile, sides)), true, 0.1, {0.6, 0.6, 0, 0}});
+  builder.addBody({"part", contact::smooth(part), true, 0.1, {0.6, 0.6, 0, 0}});
   std::vector<FingerModel> fingers = {tests::softFinger("left", 5000), tests::softFinger("right", 5000)};
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1.5e-3 : -1.5e-3, i & 2 ? half : -half, i & 4 ? half : -half});
@@ -155,8 +174,9 @@ Creep creepBetweenPads(const std::vector<Vec2>& profile, int sides, double touch
     f.pad.patch_radius = patch_radius;
   }
   const GraspModel model = buildGrasp(builder, fingers);
-  GraspState state = makeState(model, {tests::startAt(Vec3(0, 0, 0.1), Vec3::Zero(), w_W)},
-                               {Vec3(-touch, 0, 0.1), Vec3(touch, 0, 0.1)});
+  engine::BodyStart start = tests::startAt(X_WB.p, Vec3::Zero(), w_W);
+  start.X_WB.q = X_WB.q;
+  GraspState state = makeState(model, {start}, {Vec3(-touch, 0, 0.1), Vec3(touch, 0, 0.1)});
   GraspScratch scratch(model);
   std::vector<FingerInput> inputs(2);
   for (int i = 0; i < 2; ++i)
@@ -167,6 +187,13 @@ Creep creepBetweenPads(const std::vector<Vec2>& profile, int sides, double touch
   for (int i = 0; i < 3000; ++i) flagged += step(model, state, scratch, inputs).status != engine::kStepOk;
   const Pose& now = state.world.bodies[0].X_WI;
   return {(now.p - held.p).norm(), angleBetween(now.q, held.q), flagged};
+}
+
+// A turned part about the z axis.
+Creep creepBetweenPads(const std::vector<Vec2>& profile, int sides, double touch, double half, double patch_radius,
+                       const Vec3& w_W) {
+  return creepBetweenPads(contact::lathe(profile, sides), {Quat::Identity(), Vec3(0, 0, 0.1)}, touch, half,
+                          patch_radius, w_W);
 }
 
 // A barrel between two pads buzzed, as each pad's edges and its middle took turns, and a spool rocked off.
@@ -196,6 +223,28 @@ TEST(PadOnMesh, HoldsAWallThatEndsUnderThePads) {
           EXPECT_LT(creep.turn, 1e-9) << half_height << ' ' << sides << ' ' << half;
         }
       }
+    }
+  }
+}
+
+// A cone that lies with its wall on one pad touches the other with its rim, which was taken for the wall in every other
+// tick: it went to and fro by 0.03 um for ever.
+TEST(PadOnMesh, HoldsAConeThatLiesOnItsWall) {
+  for (const double top : {0.012, 0.013}) {
+    for (const int sides : {12, 24}) {
+      const contact::TriangleMesh cone =
+          contact::lathe({{0, -0.015}, {0.015, -0.015}, {top, 0.015}, {0, 0.015}}, sides);
+      const Quat q = tests::about(Vec3(0, 1, 0), -std::atan2(0.015 - top, 0.03)) * tests::about(Vec3(0, 0, 1), 0.1);
+      double low = 0, high = 0;  // of it along x
+      for (const Vec3& v : cone.vertices) {
+        low = std::min(low, (q * v).x());
+        high = std::max(high, (q * v).x());
+      }
+      const Pose X_WB{q, Vec3(-0.5 * (low + high), 0, 0.1)};
+      const Creep creep = creepBetweenPads(cone, X_WB, 0.5 * (high - low) + 2e-3, 0.0195, 0, Vec3(0, 0.3, 0));
+      EXPECT_EQ(creep.flagged, 0) << top << ' ' << sides;
+      EXPECT_LT(creep.way, 1e-11) << top << ' ' << sides;
+      EXPECT_LT(creep.turn, 1e-8) << top << ' ' << sides;
     }
   }
 }
