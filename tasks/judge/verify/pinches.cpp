@@ -1,4 +1,8 @@
 // Objects held, let slip, lifted and handed over by fingers.
+#include <numbers>
+#include <string>
+
+#include "pincer/grasp/step.h"
 #include "pincer/tasks/judge/exact/pinch.h"
 #include "pincer/tasks/judge/verify/scene_run.h"
 #include "pincer/tasks/judge/verify/verify.h"
@@ -146,6 +150,61 @@ std::vector<Record> handover(MeasureContext& context) {
   return {atMost("moved in the handover 2 -> 4 -> 2", 1e6 * moved, "um", 1), atMost("turned", turned, "rad", 1e-5)};
 }
 
+constexpr int kRowBalls = 10;
+constexpr double kRowRadius = 0.008;  // of balls and fingertips [m]
+
+// Ten balls in a groove of 90 degrees along x, nine of 10 g and one of 1 kg, pressed together by two fingers with
+// `press` [N]. Returns how far one of them goes from 1 to 10 s at most [m]; adds to the ticks that were flagged.
+double pressRow(int heavy, double press, std::int64_t& flagged) {
+  const double up = std::numbers::sqrt2 * kRowRadius;
+  engine::WorldBuilder builder{engine::WorldOptions{}};
+  std::vector<engine::BodyStart> starts;
+  for (int i = 0; i < kRowBalls; ++i) {
+    builder.addBody({"ball" + std::to_string(i), contact::Sphere{kRowRadius}, true, i == heavy ? 1 : 0.01, {0.5, 0.5}});
+    starts.push_back({{Quat::Identity(), Vec3(2 * kRowRadius * i, 0, up)}});
+  }
+  std::vector<grasp::FingerModel> fingers(2);
+  std::vector<grasp::FingerInput> inputs(2);
+  std::vector<Vec3> places;
+  for (const int end : {0, 1}) {
+    const double side = end == 0 ? -1 : 1;
+    builder.addBody({end == 0 ? "near" : "far", contact::HalfSpace{}, false, 0, {0.5, 0.5}});
+    starts.push_back({{quatFromRotationVector(Vec3(side * std::numbers::pi / 4, 0, 0)), Vec3::Zero()}});
+    grasp::FingerModel& finger = fingers[static_cast<std::size_t>(end)];
+    finger.name = end == 0 ? "left" : "right";
+    finger.radius = kRowRadius;
+    finger.coupling.stiffness.setZero();
+    finger.coupling.damping = Vec3(5, 0, 0);
+    finger.coupling.mass = 0.05;
+    finger.coupling.locked = {false, true, true};
+    places.push_back(Vec3(2 * kRowRadius * (end == 0 ? -1 : kRowBalls), 0, up));
+    inputs[static_cast<std::size_t>(end)].p_WF = places.back();
+    inputs[static_cast<std::size_t>(end)].f_W = Vec3(-side * press, 0, 0);
+  }
+  const grasp::GraspModel model = grasp::buildGrasp(std::move(builder), fingers);
+  grasp::GraspState state = grasp::makeState(model, starts, places);
+  const grasp::ScratchHandle scratch = grasp::makeScratch(model);
+  std::vector<engine::BodyState> pressed;  // the press, which comes all at once, has been taken up
+  double furthest = 0;
+  for (int tick = 0; tick < 10000; ++tick) {
+    flagged += grasp::step(model, state, *scratch, inputs).status != engine::kStepOk;
+    if (tick == 1000) pressed = state.world.bodies;
+    for (std::size_t i = 0; i < kRowBalls && tick > 1000; ++i)
+      furthest = std::max(furthest, (state.world.bodies[i].X_WI.p - pressed[i].X_WI.p).norm());
+  }
+  return furthest;
+}
+
+std::vector<Record> row(MeasureContext&) {
+  double moved = 0;
+  std::int64_t flagged = 0;
+  for (const int heavy : {0, kRowBalls / 2, kRowBalls - 1}) {
+    for (const double press : {5.0, 50.0}) moved = std::max(moved, pressRow(heavy, press, flagged));
+  }
+  return {atMost("furthest of any ball from 1 to 10 s", 1e6 * moved, "um", 1e-6),
+          exactly("flagged ticks", static_cast<double>(flagged), "-", 0)};
+}
+
 }  // namespace
 
 std::vector<Measurement> verifyPinches() {
@@ -157,7 +216,8 @@ std::vector<Measurement> verifyPinches() {
           {"pinch/lift", lift},
           {"pinch/offset-plate", offsetPlate},
           {"pinch/sliding-spinning-plate", slidingSpinningPlate},
-          {"pinch/handover", handover}};
+          {"pinch/handover", handover},
+          {"pinch/row", row}};
 }
 
 }  // namespace pincer::tasks
