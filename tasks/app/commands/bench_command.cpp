@@ -38,7 +38,8 @@ Examples:
   pincer bench engine
   pincer bench engine --only s4
   pincer bench engine --peers --out out/bench
-  pincer bench engine --peers --long --only capsule)";
+  pincer bench engine --peers --long --only capsule
+  pincer bench engine --peers --only 'robots/*')";
 
 constexpr const char* kStudyExample = R"(
 Staircases, fitted psychometric functions and orders of conditions, judged by observers whose thresholds are
@@ -103,6 +104,8 @@ void addEngineBench(CLI::App& bench, const std::shared_ptr<BenchArguments>& argu
   addMeasureOptions(*engine, arguments->measure);
   engine->add_option("--out", arguments->engine.out,
                      "Directory for runs.csv, ratios.csv and a work-precision diagram per scene");
+  engine->add_option("--models", arguments->engine.models,
+                     "Directory of MJCF files to run too, each from its first keyframe on");
   engine->add_flag("--peers", arguments->engine.peers, "Run other engines too (built with -DPINCER_PEERS=ON)");
   engine->add_flag("--long", arguments->engine.whole, "Scenes of a minute last a minute, and 1000 spheres fall");
   engine->add_option("--rounds", arguments->engine.race.rounds, "Rounds of timing; the least of them counts")

@@ -11,23 +11,16 @@
 
 #include "pincer/contact/error.h"
 #include "pincer/tasks/judge/peers/adapters.h"
+#include "pincer/tasks/judge/peers/mujoco_setting.h"
 
 namespace pincer::tasks {
 namespace {
 
-struct MujocoSetting {
-  const char* name;
-  double impratio;
-  int noslip;
-  const char* integrator;
-  bool soft = false;  // contacts as soft as they come (solref .02), as in the scene of its issue 3328
-};
 // Settings that are compared: stiff friction (impratio) or slip taken out afterwards (noslip), rigid and soft.
-constexpr MujocoSetting kMujocoSettings[] = {{"impratio 1e4", 1e4, 0, "Euler"},
-                                             {"impratio 100 noslip 30", 100, 30, "Euler"},
-                                             {"impratio 1e4 RK4", 1e4, 0, "RK4"},
-                                             {"impratio 10, soft", 10, 0, "Euler", true},
-                                             {"impratio 10 noslip 10, soft", 10, 10, "Euler", true}};
+constexpr MujocoSetting kMujocoSettings[] = {
+    {"impratio 1e4", 1e4, 0, "Euler"},           {"impratio 100 noslip 30", 100, 30, "Euler"},
+    {"impratio 1e4 RK4", 1e4, 0, "RK4"},         {"impratio 1e4 implicit", 1e4, 0, "implicit"},
+    {"impratio 10, soft", 10, 0, "Euler", true}, {"impratio 10 noslip 10, soft", 10, 10, "Euler", true}};
 
 std::string text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
 std::string text(const Quat& q) { return fmt::format("{} {} {} {}", q.w(), q.x(), q.y(), q.z()); }
@@ -223,8 +216,11 @@ std::vector<Contestant> mujocoEngines() {
     c.engine = "MuJoCo";
     c.setting = setting.name;
     c.lacks = [](const BenchWorld&) { return std::string(); };
+    c.reads_robots = !setting.soft;
     if (setting.soft) c.meant = isIssue3328;
+    if (setting.integrator == std::string_view("implicit")) c.meant = [](const BenchWorld& w) { return bool(w.robot); };
     c.make = [&setting](const BenchWorld& world, const BenchStep& step) -> std::unique_ptr<BenchEngine> {
+      if (world.robot) return mujocoRobot(*world.robot, step.h, setting);
       return std::make_unique<MujocoEngine>(world, step.h, setting);
     };
     settings.push_back(std::move(c));

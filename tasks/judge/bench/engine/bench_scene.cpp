@@ -4,10 +4,11 @@
 
 namespace pincer::tasks {
 
-std::vector<BenchScene> benchScenes(bool whole) {
+std::vector<BenchScene> benchScenes(bool whole, const std::string& models) {
   std::vector<BenchScene> all;
-  for (std::vector<BenchScene> part : {benchFreeScenes(whole), benchSlidingScenes(), benchPinchScenes(whole),
-                                       benchRestingScenes(whole), benchImpactScenes(whole), benchTopplingScenes()}) {
+  for (std::vector<BenchScene> part :
+       {benchFreeScenes(whole), benchSlidingScenes(), benchPinchScenes(whole), benchRestingScenes(whole),
+        benchImpactScenes(whole), benchTopplingScenes(), benchRobotScenes(models)}) {
     std::move(part.begin(), part.end(), std::back_inserter(all));
   }
   return all;

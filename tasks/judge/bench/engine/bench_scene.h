@@ -41,7 +41,8 @@ struct BenchScene {
 };
 
 // In the order of docs/benchmarks.md. `whole`: the scenes of a minute last a minute, and there are 1000 spheres.
-std::vector<BenchScene> benchScenes(bool whole);
+// `models`: a directory of robots to run too (benchRobotScenes); empty: none. Throws InputError.
+std::vector<BenchScene> benchScenes(bool whole, const std::string& models = {});
 
 // Its parts, one source file each.
 std::vector<BenchScene> benchFreeScenes(bool whole);
@@ -50,6 +51,9 @@ std::vector<BenchScene> benchPinchScenes(bool whole);
 std::vector<BenchScene> benchImpactScenes(bool whole);
 std::vector<BenchScene> benchRestingScenes(bool whole);
 std::vector<BenchScene> benchTopplingScenes();
+// Robots that the program carries, and each MJCF file of the directory `models` from its first keyframe on (or as
+// drawn): what is free there is held, and where nothing is, the robot moves.
+std::vector<BenchScene> benchRobotScenes(const std::string& models);
 
 // Bodies that many scenes have.
 BenchBody benchFloor();

@@ -7,6 +7,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,11 +40,19 @@ struct BenchBody {
   Vec3 hinge_W = Vec3::Zero();                            // [m]
 };
 
+// A robot with all that it touches, from one MJCF file that engines read themselves.
+struct BenchRobot {
+  std::string file;                 // a path, or that of a file that the program carries (run/files/builtin_files.h)
+  std::string keyframe;             // its pose at the start, its controls for good; empty: as drawn, 0
+  std::vector<std::string> bodies;  // motion(i) is that of the i-th: X_WB, B as the file has it
+};
+
 struct BenchWorld {
   Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
   double mu = 0.5;
   double restitution = 0;
   std::vector<BenchBody> bodies = {};
+  std::optional<BenchRobot> robot = {};  // in place of all of the above
 };
 
 struct BenchMotion {
@@ -70,6 +79,7 @@ struct BenchStep {
 struct Contestant {
   std::string engine = {}, setting = {};
   std::vector<BenchStep> ladder = {};                        // empty: the scene's
+  bool reads_robots = false;                                 // else it is left out of worlds with one
   std::function<bool(const BenchWorld&)> meant = {};         // for which worlds; null: all. Left out elsewhere
   std::function<std::string(const BenchWorld&)> lacks = {};  // why it takes no part in this world; empty: it does
   std::function<std::unique_ptr<BenchEngine>(const BenchWorld&, const BenchStep&)> make = {};
@@ -79,6 +89,9 @@ struct Contestant {
 
 // pincer itself: at the scene's steps, and at 1 ms with its tolerance from coarse to fine.
 std::vector<Contestant> pincerContestants();
+
+// A robot in pincer. Throws InputError.
+std::unique_ptr<BenchEngine> pincerRobot(const BenchRobot& robot, const BenchStep& step);
 
 // Other engines, each at its documented best (tasks/judge/peers); none in a build without -DPINCER_PEERS=ON.
 std::vector<Contestant> enginePeers();

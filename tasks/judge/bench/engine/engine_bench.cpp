@@ -83,7 +83,7 @@ std::vector<Measurement> engineMeasurements(const EngineBenchOptions& options) {
   }
   std::vector<Measurement> measurements;
   const auto tables = std::make_shared<EngineTables>();
-  for (BenchScene& scene : benchScenes(options.whole)) {
+  for (BenchScene& scene : benchScenes(options.whole, options.models)) {
     const auto shared = std::make_shared<const BenchScene>(std::move(scene));
     const auto run = [=](MeasureContext& context) {
       return runBenchScene(*shared, contestants, options, *tables, context);

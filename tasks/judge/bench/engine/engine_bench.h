@@ -11,9 +11,10 @@
 namespace pincer::tasks {
 
 struct EngineBenchOptions {
-  bool peers = false;    // beside other engines, where they are built in
-  bool whole = false;    // scenes of a minute last a minute, and there are 1000 spheres
-  std::string out = {};  // directory for CSV files and plots; empty: none
+  bool peers = false;       // beside other engines, where they are built in
+  bool whole = false;       // scenes of a minute last a minute, and there are 1000 spheres
+  std::string models = {};  // directory of robots in MJCF that are run too; empty: none
+  std::string out = {};     // directory for CSV files and plots; empty: none
   RaceOptions race;
 };
 

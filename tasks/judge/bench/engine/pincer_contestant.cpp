@@ -156,6 +156,7 @@ class PincerEngine : public BenchEngine {
 
 std::vector<Contestant> pincerContestants() {
   const auto make = [](const BenchWorld& world, const BenchStep& step) -> std::unique_ptr<BenchEngine> {
+    if (world.robot) return pincerRobot(*world.robot, step);
     return std::make_unique<PincerEngine>(world, step);
   };
   const auto always = [](const BenchWorld&) { return std::string(); };
@@ -164,7 +165,8 @@ std::vector<Contestant> pincerContestants() {
                ? fmt::format("not run with more than {} bodies, for its cost", kMostWithin)
                : std::string();
   };
-  Contestant plain{"pincer", "", {}, {}, always, make}, within{"pincer", "with tolerance", {}, {}, if_small, make};
+  Contestant plain{"pincer", "", {}, true, {}, always, make},
+      within{"pincer", "with tolerance", {}, false, {}, if_small, make};
   for (const double tolerance : {1e-7, 1e-9, 1e-11}) within.ladder.push_back({1e-3, tolerance});
   return {plain, within};
 }

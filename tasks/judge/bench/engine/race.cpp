@@ -16,6 +16,7 @@ constexpr double kJudging = 0.4;  // share of the progress that judging takes
 std::vector<RaceRun> entries(const BenchScene& scene, const std::vector<Contestant>& contestants) {
   std::vector<RaceRun> runs;
   for (std::size_t c = 0; c < contestants.size(); ++c) {
+    if (scene.world.robot && !contestants[c].reads_robots) continue;
     if (contestants[c].meant && !contestants[c].meant(scene.world)) continue;
     const std::string lacks = contestants[c].lacks(scene.world);
     if (!lacks.empty()) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "pincer/contact/error.h"
@@ -230,6 +231,45 @@ TEST(BenchScenes, ACapsuleBetweenPadsDoesntCreep) {
     EXPECT_LT(std::abs(way[1] - way[0]), 1e-10) << scene.name;
   }
   EXPECT_GE(capsules, 1);
+}
+
+// Things that robots hold stay, nearly to the bit; free motion of robots is that of a finer step.
+TEST(BenchScenes, RobotsHoldAndMoveAsPromised) {
+  const std::vector<BenchScene> scenes = benchRobotScenes({});
+  for (const BenchScene& scene : scenes) {
+    const auto engine = pincerContestants().front().make(scene.world, {.h = 1e-3});
+    const BenchJudge judge = scene.judge();
+    for (int k = 1; k <= std::lround(1e3 * scene.duration); ++k) {
+      engine->step();
+      if (judge.look) judge.look(1e-3 * k, *engine);
+    }
+    const BenchVerdict verdict = judge.verdict(*engine);
+    EXPECT_EQ(verdict.failure + engine->complaint(), "") << scene.name;
+    EXPECT_LE(verdict.error, scene.error_bound) << scene.name;
+  }
+  EXPECT_EQ(scenes.size(), 7u);
+}
+
+// A cube beside an arm is to be held, a robot with a free base isn't.
+TEST(BenchScenes, ModelsAreHeldOrFollowedByWhatIsFreeInThem) {
+  std::map<std::string, BenchScene> scenes;
+  for (const BenchScene& s : benchRobotScenes(PINCER_SOURCE_DIR "/tests/robots/models")) scenes[s.name] = s;
+  EXPECT_EQ(scenes.at("robots/arm_gripper").world.robot->bodies, (std::vector<std::string>{"cube"}));
+  EXPECT_EQ(scenes.at("robots/arm_gripper").world.robot->keyframe, "home");
+  EXPECT_EQ(scenes.at("robots/arm_gripper").duration, scenes.at("robots/gripper-holds").duration);
+  EXPECT_EQ(scenes.at("robots/floating_base").duration, scenes.at("robots/arm-swings").duration);
+  EXPECT_THROW(benchRobotScenes("no such folder"), InputError);
+}
+
+TEST(Race, RobotsAreRunByEnginesThatReadThem) {
+  BenchScene scene = glide();
+  scene.world.robot = BenchRobot{};
+  Contestant reader = fake("reader", 0);
+  reader.reads_robots = true;
+  MeasureContext context;
+  const auto runs = race(scene, {fake("other", 0), reader}, {}, context);
+  ASSERT_EQ(runs.size(), scene.steps.size());
+  for (const RaceRun& run : runs) EXPECT_EQ(run.contestant, 1u);
 }
 
 TEST(GuidingForce, IsSpringDamperAndPushAlongTheFreeAxes) {
