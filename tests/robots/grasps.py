@@ -106,7 +106,7 @@ def run(pincer, scene, folder, awake):
     command = [pincer, "sim", path, "--out", out, "--json"] + (["--awake"] if awake else [])
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
-        raise SystemExit(done.stderr[-2000:] or done.stdout[-2000:])
+        raise SystemExit(f"pincer sim ended with {done.returncode}:\n{done.stderr[-2000:]}\n{done.stdout[-2000:]}")
     with open(out) as file:
         rows = [[float(x) for x in row] for row in csv.reader(line for line in file if line[0] in "-0123456789")]
     return rows, json.loads(done.stdout)
