@@ -16,10 +16,10 @@
 namespace pincer::tasks {
 namespace {
 
-constexpr double kSettled = 1, kHeld = 3;  // [s]: creep is counted from, to
-constexpr double kDropped = 0.01;          // [m]
-constexpr double kFineStep = 1e-3 / 32;    // [s]
-constexpr double kMicrometre = 1e-6;       // [m]
+constexpr double kSettled = 1, kHeld = 3;     // [s]: creep is counted from, to
+constexpr double kDropped = 0.01;             // [m]
+constexpr double kReferenceStep = 1e-3 / 32;  // [s]
+constexpr double kMicrometre = 1e-6;          // [m]
 
 BenchScene robotScene(const std::string& name, BenchRobot robot) {
   BenchScene s;
@@ -32,7 +32,7 @@ BenchScene robotScene(const std::string& name, BenchRobot robot) {
 }
 
 // The first of its bodies stays where it is; with a second one, where it is in the frame of that.
-BenchScene holdScene(const std::string& name, BenchRobot robot) {
+BenchScene robotHoldScene(const std::string& name, BenchRobot robot) {
   const bool carried = robot.bodies.size() > 1;
   BenchScene s = robotScene(name, std::move(robot));
   s.metric = fmt::format("largest way from {:g} to {:g} s", kSettled, kHeld);
@@ -82,8 +82,8 @@ BenchScene motionScene(const std::string& name, const BenchRobot& robot, double 
   const auto exact = std::make_shared<std::vector<Vec3>>();
   s.judge = [=] {
     if (exact->empty()) {
-      *exact = placesAt(end, robot, 0.5 * kFineStep);
-      const std::vector<Vec3> coarse = placesAt(end, robot, kFineStep);
+      *exact = placesAt(end, robot, 0.5 * kReferenceStep);
+      const std::vector<Vec3> coarse = placesAt(end, robot, kReferenceStep);
       for (std::size_t i = 0; i < coarse.size(); ++i) (*exact)[i] += ((*exact)[i] - coarse[i]) / 3;
     }
     return judgeOfEnd([=](BenchEngine& e) {
@@ -109,7 +109,8 @@ BenchScene sceneOfModel(const std::filesystem::path& path) {
     (is_free ? held : ends).bodies.push_back(body.name);
   }
   held.bodies.resize(std::min<std::size_t>(held.bodies.size(), 1));
-  BenchScene s = held.bodies.empty() ? motionScene(path.stem().string(), ends) : holdScene(path.stem().string(), held);
+  BenchScene s =
+      held.bodies.empty() ? motionScene(path.stem().string(), ends) : robotHoldScene(path.stem().string(), held);
   s.error_bound = kInfinity;  // nothing is promised of it
   return s;
 }
@@ -122,10 +123,10 @@ std::vector<BenchScene> benchRobotScenes(const std::string& models) {
       motionScene("arm-swings", {carried("bench_arm.xml"), "start", {"hand"}}),
       motionScene("linkage-opens", {carried("bench_linkage.xml"), "start", {"left", "right"}}),
       motionScene("hand-opens", {carried("bench_hand.xml"), "start", {"tip0", "tip1", "tip2"}}, 0.1),
-      holdScene("gripper-holds", {carried("bench_gripper.xml"), "start", {"cube"}}),
-      holdScene("linkage-holds", {carried("bench_linkage_cube.xml"), "start", {"cube"}}),
-      holdScene("hand-holds", {carried("bench_hand_ball.xml"), "start", {"ball"}}),
-      holdScene("arm-carries", {carried("bench_arm_box.xml"), "start", {"box", "hand"}})};
+      robotHoldScene("gripper-holds", {carried("bench_gripper.xml"), "start", {"cube"}}),
+      robotHoldScene("linkage-holds", {carried("bench_linkage_cube.xml"), "start", {"cube"}}),
+      robotHoldScene("hand-holds", {carried("bench_hand_ball.xml"), "start", {"ball"}}),
+      robotHoldScene("arm-carries", {carried("bench_arm_box.xml"), "start", {"box", "hand"}})};
   if (models.empty()) return scenes;
   std::vector<std::filesystem::path> files;
   std::error_code failure;
