@@ -30,7 +30,9 @@ struct CoreTracker {
 
 // Memory of a finger that isn't a sphere from query to query; a plain value, like SurfaceTracker.
 struct FingerTracker {
-  static constexpr int kFeet = 4;       // chosen: a capsule has two ends, of a pad up to four corners are led downhill
+  static constexpr int kFeet = 4;  // chosen: a capsule has two ends, of a pad up to four corners are led downhill
+  // numbers of its balls' memories (SurfaceTracker::memory): from the main one's on, the feet's, one for what is tried
+  static constexpr std::uint32_t kMemories = kFeet + 2;
   CoreTracker main;                     // the deepest place of the core
   std::array<CoreTracker, kFeet> feet;  // of a capsule its two ends, of a pad see shape/pad_query.h
 };

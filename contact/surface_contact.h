@@ -46,6 +46,7 @@ struct QueryCost {
   int crossings = 0;     // of triangle edges
   int reseeds = 0;       // contacts that the search had to find again
   int held = 0;          // contacts without a solution
+  int looks = 0;         // around for what is near
 };
 
 struct SurfaceContacts {
@@ -71,8 +72,7 @@ struct SurfaceLook {
   Vec3 p_BC = Vec3::Zero();  // where the centre was
   double reach = 0;          // further contacts were wanted no further than this from it [m]
   double horizon = 0;        // the centre's way for which what it found is all that may be met [m]; 0: look again
-  double vouched = 0;  // the centre's way for which nothing is met but the contact that is known [m]; 0: ask the list
-  bool is_alone = false;  // nothing may be met but the one contact that was followed (lone_contact.h)
+  bool is_alone = false;     // nothing may be met but the one contact that was followed (lone_contact.h)
   // The normals of the contacts that were followed, by slot, zero without one: while they have hardly
   // turned, what faces along them is theirs.
   std::array<Vec3, kMaxSurfaceContacts> n = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
@@ -87,14 +87,15 @@ struct SurfaceTracker {
   Vec3 p_BC_last = Vec3::Zero();  // where it was
   bool has_centre = false;        // whether it has been outside
   SurfaceLook look;
-  // that takes over where `look` will end, and is worked out meanwhile (near_parts.h); horizon 0: none
-  SurfaceLook ahead;
   // parts of the look's list whose turn to be tried has passed; the next query goes on behind them
   std::int32_t tried = 0;
   double gone = 0;              // the length of the centre's way so far, and of what the reach has grown by [m]
   double full_at = -kInfinity;  // `gone` where a further contact last found no slot [m]
   double reach = 0;             // how far from the centre contacts were followed in the last query [m]
   std::uint32_t status = 0;     // bits of QueryStatus of the last query
+  // Which of the cache's memories of what is near is this tracker's. No answer depends on it; trackers that share a
+  // cache and a number cost a look around at every query.
+  std::uint32_t memory = 0;
 };
 
 enum QueryStatus : std::uint32_t {

@@ -65,6 +65,8 @@ void addEnds(const Shape& shape, const CapsuleTip& capsule, const Pose& X_BF, do
 FingerContacts queryFinger(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin,
                            FingerTracker& tracker, PatchCache& cache) {
   PINCER_ASSERT(isUnitIfFinite(X_BF.q));
+  std::uint32_t memory = tracker.main.ball.memory;
+  for (CoreTracker& foot : tracker.feet) foot.ball.memory = ++memory;
   if (std::holds_alternative<PadTip>(finger)) return queryPad(shape, finger, X_BF, margin, tracker, cache);
   const CoreDescent deepest = descend(shape, finger, X_BF, margin, tracker.main, cache);
   FingerContacts out;

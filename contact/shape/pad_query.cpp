@@ -174,12 +174,19 @@ class PadQuery {
     });
     if (!furthest) return false;
     const auto isLevel = [&](const Vec3& p_W, double phi) {
-      SurfaceTracker tracker = tracker_.main.ball;
+      SurfaceTracker tracker = triedBall();
       const Vec3 p_BC = p_W + (0.5 * phi + pad_.rounding) * main.n_B;
       return std::abs(querySphere(shape_, p_BC, pad_.rounding, 0, tracker, cache_).main().phi - phi) < same_gap;
     };
     return isLevel(deepest->p_W, deepest->phi) &&
            isLevel(0.5 * (deepest->p_W + furthest->p_W), 0.5 * (deepest->phi + furthest->phi));
+  }
+
+  // From where the main contact is, with a memory that isn't the main one's.
+  SurfaceTracker triedBall() const {
+    SurfaceTracker ball = tracker_.main.ball;
+    ball.memory += FingerTracker::kMemories - 1;
+    return ball;
   }
 
   // Of the facet that faces the surface: along its edges, each a capsule that searches from where the main contact is,
@@ -238,7 +245,7 @@ class PadQuery {
   void addEdge(const Facet& facet, int k, FingerContacts& found) {
     const FacetCorner &from = facet.corners[static_cast<std::size_t>(k)],
                       &to = facet.corners[static_cast<std::size_t>((k + 1) % facet.count)];
-    CoreTracker tracker{tracker_.main.ball, Vec3::Zero(), false};
+    CoreTracker tracker{triedBall(), Vec3::Zero(), false};
     const FingerShape edge = CapsuleTip{pad_.rounding, 0.5 * (to.p - from.p)};
     const Pose X_BE{X_BF_.q, X_BF_ * (0.5 * (from.p + to.p))};
     addIfNew(descend(shape_, edge, X_BE, 0, tracker, cache_), kFirstEdge + from.edge, found);

@@ -1,12 +1,8 @@
 #include "pincer/contact/surface/ease.h"
 
+#include "pincer/contact/surface/tolerances.h"
+
 namespace pincer::contact {
-
-namespace {
-
-constexpr double kOnePlace = 1e-3;  // of r: contacts nearer than this are one
-
-}  // namespace
 
 void EasedContacts::moveOn(int slot, const ShellContact& contact) {
   const SurfaceSlot& before = kept(slot);

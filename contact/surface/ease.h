@@ -34,6 +34,7 @@ struct TouchingBall {
   double moved;  // |C - C_last| [m]
   double shown;  // how near to the centre contacts have to be to be reported [m]
   double reach;  // and to be followed [m], >= shown
+  double turn;   // the way within which each place is tried once [m]; 0: in every query
   bool eases;    // false: contacts come and go as they are found
 
   Vec3 placeOf(const ShellContact& c) const { return C - c.h * c.n; }

@@ -15,7 +15,6 @@
 
 #include "pincer/contact/assert.h"
 #include "pincer/contact/surface/four_lanes.h"
-#include "pincer/contact/surface/tree_walk.h"
 
 namespace pincer::contact {
 
@@ -48,11 +47,9 @@ class FacingTree {
   void visitFacing(const Vec3& p, const double& bound2, Facing facing, Visit&& visit) const;
 
   // Calls visit(leaf) on all leaves that `p` may come to be nearer to than `reach` and to face before it has
-  // moved by `horizon` [m], which may shrink meanwhile; without those whose cones are `passed`. Carries `walk` on
-  // by at most `most` visits. Allocates nothing.
+  // moved by `horizon` [m], which may shrink meanwhile; without those whose cones are `passed`. Allocates nothing.
   template <class Visit>
-  void visitNear(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk, int most,
-                 Visit&& visit) const;
+  void visitNear(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const;
 
   // Calls visit(leaf) on all leaves that the box touches, until it returns false.
   template <class Visit>
@@ -61,13 +58,7 @@ class FacingTree {
   // Calls visit(leaf) on all leaves for which, and for all that holds them,
   // test(Children) is true, until it returns false.
   template <class Test, class Visit>
-  void visitWhere(Test&& test, Visit&& visit) const {
-    TreeWalk walk;
-    walkWhere(walk, kWholeWalk, test, visit);
-  }
-  // The same, as far as at most `most` visits of nodes and leaves lead.
-  template <class Test, class Visit>
-  void walkWhere(TreeWalk& walk, int most, Test&& test, Visit&& visit) const;
+  void visitWhere(Test&& test, Visit&& visit) const;
 
   // The bounds of a node's children; of a lane without one the box is inside out.
   struct Children {
@@ -89,6 +80,8 @@ class FacingTree {
   double rounding(const Vec3& p) const { return 4e-7 * (p.cwiseAbs().maxCoeff() + extent_); }
 
  private:
+  static constexpr std::size_t kMostWaiting = 64;  // nodes: three per level at most, of at most sixteen levels
+
   struct Node : Children {
     std::array<std::int32_t, kLanes> child;  // >= 0: a node; < 0: leaf -1 - child
   };
@@ -129,7 +122,7 @@ void FacingTree::visitFacing(const Vec3& p, const double& bound2, Facing facing,
     std::int32_t node;
     float distance2;
   };
-  std::array<Entry, TreeWalk::kMostWaiting> stack;
+  std::array<Entry, kMostWaiting> stack;
   std::size_t size = 0;
   const LanesPoint x(p);
   const Lanes widening = LanesPoint::toLanes(rounding(p));
@@ -157,9 +150,12 @@ void FacingTree::visitFacing(const Vec3& p, const double& bound2, Facing facing,
 }
 
 template <class Test, class Visit>
-void FacingTree::walkWhere(TreeWalk& walk, int most, Test&& test, Visit&& visit) const {
-  while (walk.size > 0 && most-- > 0) {
-    const std::int32_t top = walk.waiting[--walk.size];
+void FacingTree::visitWhere(Test&& test, Visit&& visit) const {
+  std::array<std::int32_t, kMostWaiting> waiting;
+  std::size_t size = 0;
+  waiting[size++] = 0;
+  while (size > 0) {
+    const std::int32_t top = waiting[--size];
     if (top < 0) {
       if (!visit(-1 - top)) return;
       continue;
@@ -167,15 +163,15 @@ void FacingTree::walkWhere(TreeWalk& walk, int most, Test&& test, Visit&& visit)
     const Node& node = at(top);
     const LaneMask wanted = test(node);
     for (int i = kLanes - 1; i >= 0; --i) {
-      PINCER_ASSERT(!wanted[i] || walk.size < TreeWalk::kMostWaiting);
-      if (wanted[i]) walk.waiting[walk.size++] = node.child[static_cast<std::size_t>(i)];
+      PINCER_ASSERT(!wanted[i] || size < waiting.size());
+      if (wanted[i]) waiting[size++] = node.child[static_cast<std::size_t>(i)];
     }
   }
 }
 
 template <class Visit>
-void FacingTree::visitNear(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk,
-                           int most, Visit&& visit) const {
+void FacingTree::visitNear(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed,
+                           Visit&& visit) const {
   const LanesPoint x(p);
   const double rounded = rounding(p);
   const Lanes widening = LanesPoint::toLanes(rounded);
@@ -186,7 +182,7 @@ void FacingTree::visitNear(const Vec3& p, double reach, const double& horizon, c
            c.cones.mayFace(d.along, d.centre2, c.radius + LanesPoint::toLanes(horizon + rounded)) &
            ~passed.hold(c.cones);
   };
-  walkWhere(walk, most, comesNear, [&](std::int32_t leaf) {
+  visitWhere(comesNear, [&](std::int32_t leaf) {
     visit(leaf);
     return true;
   });

@@ -29,20 +29,6 @@ bool isMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& 
   return is_least && (is_border || R.dot(outward) > 0);
 }
 
-// As far as it is less than `most`. Of a border's two edges one counts.
-double wayToMinimumAtVertex(const SurfaceNet& net, const CellCorner& at, const Vec3& p, double most) {
-  const Vec3& from = net.vertex(at.triangle, at.corner);
-  const Vec3 R = p - from;
-  double way2 = 0;
-  net.visitCorners(at, [&](const CellCorner& c) {
-    const Vec3 edge = net.vertex(c.triangle, (c.corner + 1) % 3) - from;
-    const double passed = R.dot(edge), length2 = edge.squaredNorm();
-    if (passed > 0 && passed * passed > way2 * length2) way2 = passed * passed / length2;
-    return way2 < most * most;
-  });
-  return std::sqrt(way2);
-}
-
 }  // namespace
 
 // Ericson's regions: three corners, three edges, the inside.
@@ -70,38 +56,6 @@ FlatPoint closestOnTriangle(const Vec3& a, const Vec3& b, const Vec3& c, const V
 
 FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec3& p) {
   return closestOnTriangle(net.vertex(triangle, 0), net.vertex(triangle, 1), net.vertex(triangle, 2), p);
-}
-
-[[gnu::flatten]] double wayToFlatMinimum(const SurfaceNet& net, std::int32_t t, const Vec3& p) {
-  const std::array<Vec3, 4> corners = {net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2), net.vertex(t, 0)};
-  const Vec3 n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-  std::array<Vec3, 3> along, side;                 // unit; p from the edge's line, turned across it
-  std::array<double, 3> over_edge, over_corner{};  // as far as this triangle tells
-  double least = 0;                                // over the inside, then over the edges too
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vec3 edge = corners[i + 1] - corners[i], R = p - corners[i];
-    const double length = edge.norm();
-    along[i] = 1 / length * edge;
-    side[i] = R.cross(along[i]);
-    const double across = side[i].dot(n), passed = R.dot(along[i]);
-    least = std::max(least, across);
-    over_edge[i] = std::max({-across, -passed, passed - length, 0.0});
-    over_corner[i] = std::max(over_corner[i], passed);
-    over_corner[(i + 1) % 3] = std::max(over_corner[(i + 1) % 3], length - passed);
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!(over_edge[i] < least)) continue;  // most: their neighbours needn't be fetched
-    if (const Neighbour other = net.neighbour(t, static_cast<int>(i)); other.triangle >= 0) {
-      const Vec3 m = (net.vertex(other.triangle, (other.edge + 2) % 3) - corners[i]).cross(along[i]);  // its normal
-      over_edge[i] = std::max(over_edge[i], side[i].dot(m) / m.norm());
-    }
-    least = std::min(least, over_edge[i]);
-  }
-  for (int i = 0; i < 3; ++i) {
-    if (over_corner[static_cast<std::size_t>(i)] < least)
-      least = std::min(least, wayToMinimumAtVertex(net, {t, i}, p, least));
-  }
-  return least;
 }
 
 bool isFlatMinimum(const SurfaceNet& net, std::int32_t triangle, const FlatPoint& flat, const Vec3& p) {

@@ -22,10 +22,4 @@ FlatPoint closestOnFacet(const SurfaceNet& net, std::int32_t triangle, const Vec
 // it. `flat` is the triangle's closest point.
 bool isFlatMinimum(const SurfaceNet& net, std::int32_t triangle, const FlatPoint& flat, const Vec3& p);
 
-// How far `p` has to move at least until the triangle has such a place [m]; 0 if it has one.
-//   The places over which a triangle has one: over its inside, between its edges' side planes; over an edge, before
-//   the neighbour's side plane and between the ends; over a vertex, behind the planes across all edges there. Each
-//   plane's distance bounds the way to its region.
-double wayToFlatMinimum(const SurfaceNet& net, std::int32_t triangle, const Vec3& p);
-
 }  // namespace pincer::contact

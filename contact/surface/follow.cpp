@@ -4,6 +4,7 @@
 #include "pincer/contact/surface/published_iteration.h"
 #include "pincer/contact/surface/shell_edge.h"
 #include "pincer/contact/surface/surface_search.h"
+#include "pincer/contact/surface/tolerances.h"
 
 namespace pincer::contact {
 
@@ -31,7 +32,6 @@ ShellContact followSlot(const FeltSurface& surface, const Vec3& C, double r, con
 
 bool isFarSide(const FeltSurface& surface, const Vec3& C, double r, const SurfaceSlot& from,
                const ShellContact& contact) {
-  constexpr double kWellAbove = 0.25;  // of r
   return contact.h < 0 && tangentContact(surface.net, surface.cache, C, footOf(from)).h > kWellAbove * r;
 }
 

@@ -8,6 +8,7 @@
 
 #include "pincer/contact/surface/normal_cone.h"
 #include "pincer/contact/surface/outward_float.h"
+#include "pincer/contact/surface/tolerances.h"
 
 namespace pincer::contact {
 
@@ -59,8 +60,6 @@ struct LaneCones {
 // Cones that lie within half of the angle at which two contacts count as two about one of up to three normals.
 class ConesAlong {
  public:
-  static constexpr double kHalfApart = 0.999505;  // its cosine: of slightly less than 1.8 degrees
-
   ConesAlong() = default;
   // Of those that aren't zero, which are unit.
   explicit ConesAlong(const std::array<Vec3, 3>& normals) {
@@ -81,7 +80,7 @@ class ConesAlong {
   }
 
  private:
-  static constexpr float kCosine = static_cast<float>(kHalfApart), kSine = 0.03146f;  // sine rounded up
+  static constexpr float kCosine = static_cast<float>(kHalfApart), kSine = static_cast<float>(kHalfApartSine);
   static Lanes toLanes(double x) { return LanesPoint::toLanes(x); }
 
   std::array<std::array<Lanes, 3>, 3> normals_;

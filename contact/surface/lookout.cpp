@@ -2,31 +2,29 @@
 
 #include <algorithm>
 
+#include "pincer/contact/surface/tolerances.h"
+
 namespace pincer::contact {
 
-Lookout::Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, double turn,
+Lookout::Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball,
                  EasedContacts& contacts, SurfaceTracker& tracker, QueryCost& cost)
     : surface_(surface),
       search_(search),
       ball_(ball),
-      turn_(turn),
       gone_(tracker.gone + ball.moved + std::max(0.0, ball.reach - tracker.reach)),
       contacts_(contacts),
       tracker_(tracker),
       cost_(cost) {}
 
-void Lookout::findMain() {
+void Lookout::findOthers() {
   if (contacts_.list().empty() && contacts_.hasLost()) findLost();
   if (!(contacts_.nearestHeight() < ball_.reach) && !contacts_.hasLost()) findNearest();
-}
-
-void Lookout::findFurther() {
+  contacts_.fadeLost();
   if (contacts_.nearestHeight() < ball_.reach) lookOut();
 }
 
 // Without any contact left: a place on the side that the finger is on, or none.
 void Lookout::findLost() {
-  constexpr double kSameDepth = 0.5;  // of r
   const int deepest = contacts_.deepestLost();
   if (!contacts_.pushes(deepest)) return contacts_.forgetLost();
   const ShellContact plane = contacts_.planeOf(deepest);
@@ -80,7 +78,6 @@ void Lookout::findNearest() {
 // contact the distance counts, not the direction. So does one in overlap that leads to none at all, on a ridge between
 // two of a hollow that the finger is too large for.
 ShellContact Lookout::nearestWithin(double bound) {
-  constexpr double kStrayed = 2.5e-3;  // of r
   const SurfaceSeed seed =
       search_.nearest(surface_.net, surface_.cache, ball_.C, bound, tracker_.has_centre ? Facing::front : Facing::both);
   if (!seed.found) return {};
@@ -97,31 +94,36 @@ ShellContact Lookout::nearestWithin(double bound) {
 }
 
 void Lookout::lookOut() {
-  if (!isGood(tracker_.look) && !takeAhead()) {
-    if (lookAlone()) return;
-    take(lookFrom(ball_.C));
-  } else if (tracker_.look.is_alone) {
-    return;
-  } else if (isEnding()) {
-    if (!(tracker_.ahead.horizon > 0) && lookAlone()) return;
-    lookAhead();
+  if (!isGood(contacts_.isAlone(), [&](int slot) { return contacts_.normalIn(slot); }) && !lookAlone()) {
+    tracker_.look = lookFromHere();
+    tracker_.tried = 0;
   }
+  if (tracker_.look.is_alone) return;
   NearParts& near = nearParts();
   const bool are_all = isEveryonesTurn();
   if (!(near.due > gone_) || are_all) examineDue(near, are_all);
   if (!are_all && isEveryonesTurn()) examineDue(near, true);
 }
 
-void Lookout::end() {
+void Lookout::end(const ShellContact& main) {
   constexpr double kTold = 2;  // turns: what was left out has its next one meanwhile
-  if (contacts_.list().isFull() && gone_ - tracker_.full_at <= kTold * turn_) tracker_.status |= kQueryContactsDropped;
+  if (contacts_.list().isFull() && gone_ - tracker_.full_at <= kTold * ball_.turn)
+    tracker_.status |= kQueryContactsDropped;
   if (!tracker_.look.is_alone) {
-    LookParts& parts = lookParts();
-    parts.p_BC = ball_.C;
-    parts.gone = gone_;
+    NearParts& near = surface_.cache.partsOf(tracker_);
+    near.p_BC = ball_.C;
+    near.gone = gone_;
   }
   tracker_.gone = gone_;
   tracker_.reach = ball_.reach;
+  // Where the centre is, or would be had it not been pressed under the surface.
+  if (main.h > 0) {
+    tracker_.p_BC = ball_.C;
+    tracker_.has_centre = true;
+  } else if (main.h <= 0 && tracker_.has_centre) {
+    tracker_.p_BC = ball_.placeOf(main) + ball_.r * main.n;
+  }
+  tracker_.p_BC_last = ball_.C;
 }
 
 }  // namespace pincer::contact

@@ -7,7 +7,7 @@
 //   reported [m] w = r / 16: the centre's way within which each place is tried once, in turns (turns.h)
 //
 // It lives from looks: each tells for a way of the centre which parts of the surface may matter (near_parts.h), or that
-// none does (lone_contact.h). The next one is made while this one holds.
+// none does (lone_contact.h).
 //
 // - A new contact is one that the finger could come to from outside: its place faces where the centre was at the last
 //   query and faces it now, and no other part of the surface hides it. A centre that has been pressed under the surface
@@ -30,32 +30,20 @@ namespace pincer::contact {
 
 class Lookout {
  public:
-  // `turn` is w [m], 0: no turns are waited for.
-  Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, double turn,
-          EasedContacts& contacts, SurfaceTracker& tracker, QueryCost& cost);
+  Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, EasedContacts& contacts,
+          SurfaceTracker& tracker, QueryCost& cost);
 
   // True if nothing can be met beside one contact that is followed alone, as far as is known without it; with its
   // normal `n`: in all.
   bool isNothingDue();
   bool isQuietAround(int slot, const Vec3& n) const;
 
-  // Finds the main contact where none is followed within reach.
-  void findMain();
-  // Finds what else there is.
-  void findFurther();
+  // Finds the main contact where none is followed within reach, then what else there is.
+  void findOthers();
   // Carries the memory on to the next query.
-  void end();
+  void end(const ShellContact& main);
 
  private:
-  // places that a query looks from for further contacts; the others' turn comes in the next
-  static constexpr int kMaxTries = 16;
-
-  // Where a try has led.
-  struct TriedPlace {
-    Foot foot;
-    Vec3 S, n;
-  };
-
   void findLost();
   void findNearest();
   ShellContact nearestWithin(double bound);
@@ -66,48 +54,31 @@ class Lookout {
     return (ball_.C - look.p_BC).norm() + std::max(0.0, ball_.reach - look.reach);
   }
   double goneAt(const SurfaceLook& look) const { return gone_ - wayFrom(look); }
-  bool isGood(const SurfaceLook& look) const;
   template <class NormalIn>
-  bool isGoodFor(const SurfaceLook& look, bool is_alone, const NormalIn& normalIn) const;
-  template <class NormalIn>
-  bool hasTurnedHalf(const NormalIn& normalIn) const;
-  bool isPastHalf() const;
-  bool isEnding() const;
+  bool isGood(bool is_alone, const NormalIn& normalIn) const;
   bool lookAlone();
-  void lookAhead();
-  bool takeAhead();
-  void take(SurfaceLook look);
-  SurfaceLook lookFrom(const Vec3& p_BC) const;
-  SurfaceLook lookAtEnd() const;
+  SurfaceLook lookFromHere() const;
   bool turnsSlowly(const ShellContact& contact) const;
-  LookParts& lookParts();
-  NearParts& carryOn(const SurfaceLook& look, int visits, NearParts& near);
-  NearParts& nearParts() { return carryOn(tracker_.look, kWholeWalk, lookParts().now); }
+  NearParts& nearParts();
 
   void examineDue(NearParts& near, bool are_all);
   void examine(const Turns& turns, NearPart& part);
   bool isEveryonesTurn() const;
   bool hasTriedEnough() const;
   double reachOfTry(bool has_turn) const;
-  bool isFollowedOn(std::int32_t triangle) const;
-  double wayTo(std::int32_t place, const PatchBounds& part) const;
   bool isKnown(std::int32_t triangle, const PatchBounds& part) const;
-  bool stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle, const PatchBounds& part) const;
   void tryPlace(const Foot& foot);
-  ShellContact followUntilKnown(const Foot& foot);
   bool isNew(const ShellContact& candidate) const;
 
   const FeltSurface& surface_;
   const SurfaceSearch& search_;
   const TouchingBall& ball_;
-  const double turn_;
   const double gone_;  // SurfaceTracker::gone here
   EasedContacts& contacts_;
   SurfaceTracker& tracker_;
   QueryCost& cost_;
 
-  ShortList<TriedPlace, kMaxTries> seen_;  // where tries have led
-  int walked_ = 0;                         // steps and crossings on the way
+  int tries_ = 0, walked_ = 0;  // places tried in this query; steps and crossings of their walks
 };
 
 }  // namespace pincer::contact

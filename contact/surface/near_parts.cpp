@@ -36,51 +36,28 @@ void keepMinima(const SurfaceNet& net, const SurfaceSearch& search, double gone_
 
 }  // namespace
 
-void beginNearParts(const SurfaceNet& net, const SurfaceLook& look, NearParts& found) {
+void listNearParts(const SurfaceNet& net, const SurfaceSearch& search, const SurfaceLook& look, double gone_at_look,
+                   NearParts& found) {
   PINCER_ASSERT(!(look.reach <= 0));
   found.net = net.fingerprint();
   found.look = look;
   found.look.horizon = kLookHorizon * look.reach;
   found.parts.clear();
   found.due = 0;
-  found.walk = {};
-  found.is_whole = false;
-}
-
-void continueNearParts(const SurfaceNet& net, const SurfaceSearch& search, double gone_at_look, int most,
-                       NearParts& found) {
-  if (found.is_whole) return;
-  const SurfaceLook& look = found.look;
-  const ConesAlong passed(look.n);
-  search.walkParts(look.p_BC, look.reach, found.look.horizon, passed, found.walk, most,
-                   [&](std::int32_t place, double approach) {
-                     if (found.parts.size() == kMostParts) halve(found);
-                     PINCER_ASSERT(found.parts.size() < found.parts.capacity());  // the tick allocates nothing
-                     const float rounded = below(approach);
-                     if (approach < found.look.horizon)
-                       found.parts.push_back({place, rounded, gone_at_look + rounded, 0});
-                   });
-  if (!found.walk.isOver()) return;
+  search.visitParts(look.p_BC, look.reach, found.look.horizon, ConesAlong(look.n),
+                    [&](std::int32_t place, double approach) {
+                      if (found.parts.size() == kMostParts) halve(found);
+                      PINCER_ASSERT(found.parts.size() < found.parts.capacity());  // the tick allocates nothing
+                      const float rounded = below(approach);
+                      if (approach < found.look.horizon)
+                        found.parts.push_back({place, rounded, gone_at_look + rounded, 0});
+                    });
   if (!(found.look.horizon > 0)) keepMinima(net, search, gone_at_look, found);
-  found.is_whole = true;
 }
 
-void forgetDues(double gone_at_look, NearParts& parts) {
-  for (NearPart& part : parts.parts) part = {part.place, part.approach, gone_at_look + part.approach, 0};
-  parts.due = 0;
-}
-
-void takeDues(const NearParts& from, NearParts& to) {
-  if (from.net != to.net) return;
-  PINCER_ASSERT(isAscending(from.parts, &NearPart::place) && isAscending(to.parts, &NearPart::place));
-  auto known = from.parts.begin();
-  for (NearPart& part : to.parts) {
-    while (known != from.parts.end() && known->place < part.place) ++known;
-    if (known == from.parts.end() || known->place != part.place) continue;
-    part.due = std::max(part.due, known->due);
-    part.turn = known->turn;
-  }
-  to.due = 0;
+void forgetDues(double gone_at_look, NearParts& near) {
+  for (NearPart& part : near.parts) part = {part.place, part.approach, gone_at_look + part.approach, 0};
+  near.due = 0;
 }
 
 }  // namespace pincer::contact

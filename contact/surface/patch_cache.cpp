@@ -10,9 +10,7 @@ namespace pincer::contact {
 PatchCache::PatchCache(int cells)
     : places_(std::bit_ceil(static_cast<std::size_t>(std::max(cells, 1)))), last_(places_.size() - 1) {
   PINCER_DEMAND(cells > 0, "PatchCache: room for one patch at least");
-  for (LookParts& looks : parts_) {
-    for (NearParts* near : {&looks.now, &looks.ahead}) near->parts.reserve(kMostParts);
-  }
+  for (NearParts& near : parts_) near.parts.reserve(kMostParts);
 }
 
 void DeletePatchCache::operator()(PatchCache* cache) const { delete cache; }

@@ -28,16 +28,13 @@ class PatchCache {
     return places_[(static_cast<std::uint64_t>(triangle) ^ net) & last_];
   }
 
-  // The place for what is near a finger: the same for as long as its tracker stays where
-  // it is, and another than its neighbours'.
-  LookParts& partsOf(const SurfaceTracker& tracker) {
-    return parts_[reinterpret_cast<std::uintptr_t>(&tracker) / sizeof(SurfaceTracker) % parts_.size()];
-  }
+  // The place for what is near a finger.
+  NearParts& partsOf(const SurfaceTracker& tracker) { return parts_[tracker.memory % parts_.size()]; }
 
  private:
   std::vector<Place> places_;
   std::uint64_t last_;               // place
-  std::array<LookParts, 31> parts_;  // a prime, so that fingers on one of many bodies have different ones
+  std::array<NearParts, 31> parts_;  // a prime, so that fingers of equally many memories have different ones
 };
 
 }  // namespace pincer::contact

@@ -36,7 +36,6 @@ struct ShellContact {
   bool converged = false;
   WalkCost cost;
   FootMotion motion = {};
-  bool has_met = false;  // came into a triangle at which it was to end
 };
 
 inline Foot footOf(const SurfaceSlot& slot) {

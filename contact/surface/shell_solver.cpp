@@ -66,15 +66,8 @@ bool carryInside(const SurfaceNet& net, Foot& foot, int& crossings) {
 
 class ShellWalk {
  public:
-  ShellWalk(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,
-            std::span<const std::int32_t> ends)
-      : net_(net),
-        cache_(cache),
-        C_(C),
-        ends_(ends),
-        done_(kDone * net.length()),
-        nearly_(kNear * net.length()),
-        foot_(start) {
+  ShellWalk(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start)
+      : net_(net), cache_(cache), C_(C), done_(kDone * net.length()), nearly_(kNear * net.length()), foot_(start) {
     PINCER_ASSERT(isIndex(start.triangle, static_cast<std::size_t>(net.size())));
     result_.foot = start;
   }
@@ -108,16 +101,10 @@ class ShellWalk {
   void enterFace();
   void accept(const Vec3& n, double h);
   void giveUp() { state_ = State::ended; }
-  void meet() {
-    result_.foot = foot_;
-    result_.has_met = true;
-    state_ = State::ended;
-  }
 
   const SurfaceNet& net_;
   PatchCache& cache_;
   const Vec3 C_;
-  const std::span<const std::int32_t> ends_;
   const double done_, nearly_;  // [m]
   Foot foot_;
   State state_ = State::onFace;
@@ -134,7 +121,6 @@ class ShellWalk {
 };
 
 void ShellWalk::stepOnFace() {
-  if (std::find(ends_.begin(), ends_.end(), foot_.triangle) != ends_.end()) return meet();
   const PatchPoint x = evaluate(cell().patch, foot_.b[1], foot_.b[2]);
   const FaceStep step = faceStep(x, C_, next_kind_);
   if (step.residual < done_ || (near_ && step.residual < nearly_)) {
@@ -319,9 +305,8 @@ void ShellWalk::accept(const Vec3& n, double h) {
 
 }  // namespace
 
-ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,
-                        std::span<const std::int32_t> ends) {
-  return ShellWalk(net, cache, C, start, ends).run();
+ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start) {
+  return ShellWalk(net, cache, C, start).run();
 }
 
 [[gnu::flatten]] ShellContact solveShellBeside(const SurfaceNet& net, PatchCache& cache, const Vec3& C,

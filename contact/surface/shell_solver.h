@@ -15,17 +15,14 @@
 // the feature states: this project's design.
 #pragma once
 #include <cstdint>
-#include <span>
 
 #include "pincer/contact/surface/shell_contact.h"
 #include "pincer/contact/surface/surface_net.h"
 
 namespace pincer::contact {
 
-// Walks from `start` to a solution for centre `C`, no further than into one of the triangles
-// `ends`. Allocates nothing, throws nothing.
-ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start,
-                        std::span<const std::int32_t> ends = {});
+// Walks from `start` to a solution for centre `C`. Allocates nothing, throws nothing.
+ShellContact solveShell(const SurfaceNet& net, PatchCache& cache, const Vec3& C, const Foot& start);
 
 // The solution beside the place to which `start` moves with a centre that has moved by `dC` [m], over smooth edges as
 // on the flat mesh, if one Newton step leads there; else not converged. What most ticks need: one look at one patch.

@@ -214,15 +214,6 @@ std::optional<Foot> SurfaceSearch::minimumOn(const SurfaceNet& net, std::int32_t
   return Foot{triangle, flat.b};
 }
 
-float SurfaceSearch::wayToMinimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const {
-  constexpr double kRounding = 1e-12;  // of the mesh's size, of the differences between points that are compared
-  const std::int32_t triangle = triangleAt(place);
-  const double rounding = kRounding * net.length();
-  double way = wayToFlatMinimum(net, triangle, p);
-  if (!(way > rounding)) way = std::sqrt(closestOnFacet(net, triangle, p).distance2) - bulge(place) - reach;
-  return below(way - rounding);
-}
-
 bool SurfaceSearch::isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const {
   bool is_hidden = false;
   tree_.visitInBox(a.cwiseMin(b), a.cwiseMax(b), [&](std::int32_t leaf) {

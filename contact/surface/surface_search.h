@@ -57,14 +57,7 @@ class SurfaceSearch {
   // has moved by `horizon` > 0 [m], which may shrink meanwhile, each with how far it has to move for that at least.
   // Branches of the tree and patches whose cones are `passed` are left out. Allocates nothing.
   template <class Visit>
-  void visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const {
-    TreeWalk walk;
-    walkParts(p, reach, horizon, passed, walk, kWholeWalk, visit);
-  }
-  // The same, as far as at most `most` visits of the tree's nodes and leaves carry `walk` on.
-  template <class Visit>
-  void walkParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, TreeWalk& walk, int most,
-                 Visit&& visit) const;
+  void visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed, Visit&& visit) const;
   PatchBounds part(std::int32_t place) const { return group(place / kLanes).at(place % kLanes); }
   double bulge(std::int32_t place) const { return group(place / kLanes).bulge[place % kLanes]; }
   // the largest [m]; 0 where round-off is all that patches differ from their triangles by
@@ -74,9 +67,6 @@ class SurfaceSearch {
   // The place of that patch's flat triangle that is nearest to `p`, if it is nearer than `reach` (less what the patch
   // bulges), `p` is in front, and no neighbour leads nearer.
   std::optional<Foot> minimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const;
-
-  // How far `p` has to move at least until there is one, rounded down [m].
-  float wayToMinimumOn(const SurfaceNet& net, std::int32_t place, const Vec3& p, double reach) const;
 
   // How far `p` may move before it can come to face anything nearer than `reach` but the contact with the unit normal
   // `n` that it is at the height `h` over, at most `most`; 0 where that is less than `least` [m], or not known: near
@@ -147,11 +137,11 @@ inline LaneMask SurfaceSearch::PatchGroup::mayHold(const LanesPoint& p, Lanes bo
 }
 
 template <class Visit>
-void SurfaceSearch::walkParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed,
-                              TreeWalk& walk, int most, Visit&& visit) const {
+void SurfaceSearch::visitParts(const Vec3& p, double reach, const double& horizon, const ConesAlong& passed,
+                               Visit&& visit) const {
   const LanesPoint x(p);
   const double rounded = tree_.rounding(p);
-  tree_.visitNear(p, reach, horizon, passed, walk, most, [&](std::int32_t leaf) {
+  tree_.visitNear(p, reach, horizon, passed, [&](std::int32_t leaf) {
     const PatchGroup& patches = group(leaf);
     const Lanes way = LanesPoint::toLanes(horizon + rounded);
     const LaneMask is_near =

@@ -3,18 +3,16 @@
 #include "pincer/contact/surface/ease.h"
 #include "pincer/contact/surface/flat_contact.h"
 #include "pincer/contact/surface/lookout.h"
+#include "pincer/contact/surface/tolerances.h"
 
 namespace pincer::contact {
 
 namespace {
 
-constexpr double kTurn = 1.0 / 16;  // of r: the way within which each place is tried once
-constexpr double kLeap = 0.5;       // of r per query (4 m/s for 8 mm at 1 kHz): the centre was put there, not led
-
 // The variants but `smooth` show what they do at edges: jump. After a leap there is nothing to be steady with.
-TouchingBall ballAt(const Vec3& C, double r, double margin, double turn, const SurfaceTracker& tracker) {
-  const double moved = (C - tracker.p_BC_last).norm();
-  return {C, tracker.p_BC_last, r, moved, r + margin, r + margin + turn, turn > 0 && !(moved > kLeap * r)};
+TouchingBall ballAt(const Vec3& C, double r, double margin, SurfaceVariant variant, const SurfaceTracker& tracker) {
+  const double moved = (C - tracker.p_BC_last).norm(), turn = variant == SurfaceVariant::smooth ? kWay * r : 0;
+  return {C, tracker.p_BC_last, r, moved, r + margin, r + margin + turn, turn, turn > 0 && !(moved > kLeap * r)};
 }
 
 bool isOn(const SurfaceNet& net, const SurfaceSlot& slot) { return slot.triangle >= 0 && slot.triangle < net.size(); }
@@ -28,17 +26,6 @@ int onlySlot(const SurfaceTracker& tracker) {
     only = i;
   }
   return only;
-}
-
-// Where the centre is, or would be had it not been pressed under the surface.
-void keepCentre(const TouchingBall& ball, const ShellContact& main, SurfaceTracker& tracker) {
-  if (main.h > 0) {
-    tracker.p_BC = ball.C;
-    tracker.has_centre = true;
-  } else if (main.h <= 0 && tracker.has_centre) {
-    tracker.p_BC = ball.placeOf(main) + ball.r * main.n;
-  }
-  tracker.p_BC_last = ball.C;
 }
 
 // The usual tick: the only contact that is followed has moved on within its patch, nothing else has come near, and
@@ -62,8 +49,7 @@ void keepCentre(const TouchingBall& ball, const ShellContact& main, SurfaceTrack
   found.count = 1;
   found.cost.iterations = found.cost.longest_walk = contact.cost.steps;
   found.cost.crossings = contact.cost.crossings;
-  lookout.end();
-  keepCentre(ball, contact, tracker);
+  lookout.end(contact);
   return true;
 }
 
@@ -89,20 +75,16 @@ void followSlots(const FeltSurface& surface, const TouchingBall& ball, EasedCont
 
 SurfaceContacts touchSurface(const FeltSurface& surface, const SurfaceSearch& search, const Vec3& p_BC, double r,
                              double margin, SurfaceTracker& tracker) {
-  const double turn = surface.variant == SurfaceVariant::smooth ? kTurn * r : 0;
-  const TouchingBall ball = ballAt(p_BC, r, margin, turn, tracker);
+  const TouchingBall ball = ballAt(p_BC, r, margin, surface.variant, tracker);
   SurfaceContacts found;
   EasedContacts contacts(ball, tracker.slots);
-  Lookout lookout(surface, search, ball, turn, contacts, tracker, found.cost);
+  Lookout lookout(surface, search, ball, contacts, tracker, found.cost);
   tracker.status = kQueryOk;
   if (!followAlone(surface, ball, contacts, lookout, tracker, found)) {
     followSlots(surface, ball, contacts, found.cost);
-    lookout.findMain();
-    contacts.fadeLost();
-    lookout.findFurther();
+    lookout.findOthers();
     contacts.answer(found, tracker.status);
-    lookout.end();
-    keepCentre(ball, contacts.list().front().contact, tracker);
+    lookout.end(contacts.list().front().contact);
   }
   if (surface.variant == SurfaceVariant::force) shadeForce(surface.net, tracker, found);
   return found;

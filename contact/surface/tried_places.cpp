@@ -7,9 +7,7 @@ namespace pincer::contact {
 
 namespace {
 
-constexpr double kBesideKnown = 0.966;  // cosine of 15 degrees: a normal that far from a patch's still belongs to it
-// of r: the normals of what lies nearer to a contact differ by no more than kApart
-constexpr double kAround = 1.0 / 16;
+constexpr int kMostTried = 16;   // places in a query; the others' turn comes in the next
 constexpr int kMostWalked = 32;  // steps and crossings of a query's tries; the last walk is always ended
 
 // True if the place is on this triangle, or on an edge or a vertex that it has too.
@@ -48,7 +46,7 @@ void Lookout::examineDue(NearParts& near, bool are_all) {
     first += is_due && i < static_cast<std::size_t>(tracker_.tried);
     near.due = std::min(near.due, is_due ? kInfinity : when);
   }
-  const Turns turns(tracker_.gone, gone_, turn_);
+  const Turns turns(tracker_.gone, gone_, ball_.turn);
   tracker_.tried = 0;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = due[first + k < count ? first + k : first + k - count];
@@ -63,7 +61,7 @@ void Lookout::examineDue(NearParts& near, bool are_all) {
 }
 
 // The rest waits for the next query; not where everyone has a turn, but for the places that can be remembered.
-bool Lookout::hasTriedEnough() const { return seen_.isFull() || (walked_ >= kMostWalked && !isEveryonesTurn()); }
+bool Lookout::hasTriedEnough() const { return tries_ >= kMostTried || (walked_ >= kMostWalked && !isEveryonesTurn()); }
 
 // Without anything to go by, and in free space with all slots taken, where the nearest is the answer.
 bool Lookout::isEveryonesTurn() const {
@@ -76,7 +74,7 @@ double Lookout::reachOfTry(bool has_turn) const {
   const bool is_free = !contacts_.hasHistory() || !contacts_.follows() || has_turn;
   if (!contacts_.list().isFull()) return is_free ? ball_.reach : 0;
   const double highest = contacts_.heightToYield();
-  const bool is_asked_again = gone_ - tracker_.full_at > 0.5 * turn_;  // only to see whether a place is left out
+  const bool is_asked_again = gone_ - tracker_.full_at > 0.5 * ball_.turn;  // only to see whether a place is left out
   if (!(highest > 0)) return is_free && is_asked_again ? ball_.reach : 0;
   return is_free ? highest : contacts_.touches() ? 0 : std::min(highest, contacts_.nearestHeight());
 }
@@ -87,68 +85,30 @@ void Lookout::examine(const Turns& turns, NearPart& near) {
   near.turn = gone_ + turns.wayToNext(near.place);
   const double reach = reachOfTry(turns.isOf(near.place));
   if (reach < ball_.reach && !(reach > 0 && part.mayHold(ball_.C, reach, Facing::front))) return;
-  near.due = gone_;
-  if (!(turn_ > 0) && isFollowedOn(triangle)) return;  // without turns a bound would be worked out in every query
-  const double way = wayTo(near.place, part);
-  near.due += way;
+  const double way = std::max(0.0, part.approach(ball_.C, ball_.reach) - kRoundOff * surface_.net.length());
+  near.due = gone_ + way;
   if (way > 0 || !part.mayHold(ball_.C, reach, Facing::front) || isKnown(triangle, part)) return;
   if (const auto foot = search_.minimumOn(surface_.net, near.place, ball_.C, reach)) tryPlace(*foot);
 }
 
-// True if a followed contact is on the triangle, its edges and vertices among it.
-bool Lookout::isFollowedOn(std::int32_t triangle) const {
-  return contacts_.isAny([&](const FollowedContact& f) { return isOn(surface_.net, f.contact.foot, triangle); });
-}
-
-// How far the centre has to move at least until the part may matter [m].
-double Lookout::wayTo(std::int32_t place, const PatchBounds& part) const {
-  constexpr double kRounding = 1e-12;  // of the mesh's size
-  const double approach = part.approach(ball_.C, ball_.reach) - kRounding * surface_.net.length();
-  return approach > 0 ? approach
-                      : std::max<double>(0, search_.wayToMinimumOn(surface_.net, place, ball_.C, ball_.reach));
-}
-
-// True if a followed contact stands for this patch, or a place that a try has led to.
+// True if a followed contact stands for this patch: beside it, with a normal that the patch's could be. (Not any of its
+// cone's: along a groove that holds the other wall's.)
 [[gnu::flatten]] bool Lookout::isKnown(std::int32_t triangle, const PatchBounds& part) const {
-  const bool is_followed = contacts_.isAny([&](const FollowedContact& f) {
-    return stands(f.contact.foot, ball_.placeOf(f.contact), f.contact.n, triangle, part);
+  const double beside = std::max<double>(part.radius, kWay * ball_.r) + part.radius;
+  return contacts_.isAny([&](const FollowedContact& f) {
+    return isOn(surface_.net, f.contact.foot, triangle) ||
+           ((ball_.placeOf(f.contact) - part.middle()).squaredNorm() < beside * beside &&
+            closestNormal(surface_.net, triangle, f.contact.n) > kBeside);
   });
-  return is_followed || std::any_of(seen_.begin(), seen_.end(), [&](const TriedPlace& place) {
-           return stands(place.foot, place.S, place.n, triangle, part);
-         });
-}
-
-// True if the place is beside the patch, with a normal that the patch's could be. (Not any of its cone's:
-// along a groove that holds the other wall's.)
-bool Lookout::stands(const Foot& foot, const Vec3& S, const Vec3& n, std::int32_t triangle,
-                     const PatchBounds& part) const {
-  if (isOn(surface_.net, foot, triangle)) return true;
-  const double beside = std::max<double>(part.radius, kAround * ball_.r) + part.radius;
-  return (S - part.middle()).squaredNorm() < beside * beside && closestNormal(surface_.net, triangle, n) > kBesideKnown;
 }
 
 void Lookout::tryPlace(const Foot& foot) {
-  const ShellContact found =
-      surface_.variant == SurfaceVariant::smooth ? followUntilKnown(foot) : follow(surface_, ball_.C, ball_.r, foot);
-  seen_.push_back({found.foot, ball_.placeOf(found), found.n});
+  const ShellContact found = follow(surface_, ball_.C, ball_.r, foot);
+  ++tries_;
+  walked_ += found.cost.steps + found.cost.crossings;
   if (!found.converged || !(found.h > 0 && found.h < ball_.reach) || !isNew(found)) return;
   if (contacts_.list().isFull()) tracker_.full_at = gone_;
   contacts_.admit(found);
-}
-
-// As far as into a triangle in which a followed contact is: that one.
-ShellContact Lookout::followUntilKnown(const Foot& foot) {
-  ShortList<std::int32_t, kMaxSurfaceContacts> known;
-  for (const FollowedContact& f : contacts_.list()) {
-    if (!f.fades) known.push_back(f.contact.foot.triangle);
-  }
-  const ShellContact found = solveShell(surface_.net, surface_.cache, ball_.C, foot, {known.begin(), known.end()});
-  walked_ += found.cost.steps + found.cost.crossings;
-  if (!found.has_met) return found;
-  const auto isThere = [&](const FollowedContact& f) {
-    return !f.fades && f.contact.foot.triangle == found.foot.triangle;
-  };
-  return std::find_if(contacts_.list().begin(), contacts_.list().end(), isThere)->contact;
 }
 
 // True if it is a stable place, that the finger could come to from outside, and no followed contact's.

@@ -45,6 +45,9 @@ contact::FingerTracker& FingerFollower::of(int collider) {
   place_ = place == end ? -1 : static_cast<int>(place - colliders());
   contact::FingerTracker& tracker = place_ < 0 ? spare_ : all_.trackers[first_ + static_cast<std::size_t>(place_)];
   if (is_new) tracker = {};
+  // the spare one's behind all others'
+  const std::size_t memory = place_ < 0 ? all_.trackers.size() : first_ + static_cast<std::size_t>(place_);
+  tracker.main.ball.memory = static_cast<std::uint32_t>(memory * contact::FingerTracker::kMemories);
   return tracker;
 }
 

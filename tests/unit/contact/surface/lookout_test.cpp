@@ -143,5 +143,39 @@ TEST(SurfaceLookout, ItsJudgeSeesAPlaceThatIsLeftOut) {
   EXPECT_EQ(missed.missed, missed.with_several) << "each has one more face that the finger touches";
 }
 
+struct LedTogether {
+  std::vector<double> phi;
+  int looks = 0;
+};
+
+// Six fingers that share a cache are led over a plate's edge by turns, each with every `stride`-th of many trackers.
+LedTogether ledTogether(std::size_t stride) {
+  constexpr std::size_t kFingers = 6;
+  const auto object = SmoothMesh::build(gridBox({0.03, 0.02, 0.0005}, 12));
+  std::vector<SurfaceTracker> trackers(kFingers * stride);
+  PatchCache cache;
+  LedTogether led;
+  for (int i = 0; i < 200; ++i) {
+    for (std::size_t k = 0; k < kFingers; ++k) {
+      SurfaceTracker& tracker = trackers[k * stride];
+      tracker.memory = static_cast<std::uint32_t>(k);
+      const Vec3 C(0.02 + 1e-4 * i, 0.003 * static_cast<double>(k), kFinger + 0.0006 - 1e-5 * static_cast<double>(k));
+      const SurfaceContacts found = object->querySphere(C, kFinger, kNear, tracker, cache);
+      led.phi.push_back(found.main().phi);
+      led.looks += found.cost.looks;
+    }
+  }
+  return led;
+}
+
+// The memory of what is near was found by the tracker's address: who shared one looked around in every query.
+TEST(SurfaceLookout, WhereTrackersLieChangesNeitherAnswersNorCosts) {
+  const LedTogether beside = ledTogether(1), apart = ledTogether(31);
+  EXPECT_EQ(beside.phi, apart.phi);
+  EXPECT_EQ(beside.looks, apart.looks);
+  EXPECT_GT(beside.looks, 6);
+  EXPECT_LT(beside.looks, 400);  // of 1,200 queries
+}
+
 }  // namespace
 }  // namespace pincer::contact
