@@ -31,7 +31,7 @@ struct ImpliedInertia {
 
 bool isSoft(double k, double d, double m, double h);
 ImpliedInertia softLaw(const ElementTick& t);
-// What makes m^ of a soft spring that of the force in the middle: h^2 k/4 less h^2 k/12.
+// Added to m^ of a soft spring, h^2 k/12, it is that of the force in the middle, h^2 k/4.
 inline double middleMass(double k, double h) { return k * h * h / 6; }
 ImpliedInertia stiffLaw(const ElementTick& t, double m);
 
