@@ -71,8 +71,8 @@ bool Lookout::turnsSlowly(const ShellContact& contact) const {
   return true;
 }
 
-// Those of the tracker's look. What is due when is forgotten where the tracker comes from elsewhere than from the last
-// query with this memory: set back, or copied.
+// The parts near the tracker's look. What is due when is forgotten where the tracker comes from elsewhere than from the
+// last query with this memory: set back, or copied.
 NearParts& Lookout::nearParts() {
   NearParts& near = surface_.cache.partsOf(tracker_);
   if (!near.areOf(surface_.net.fingerprint(), tracker_.look)) {

@@ -72,6 +72,8 @@ bool isAllowed(const TreeModel& tree, const TreeScratch& s, std::span<const doub
 }  // namespace
 
 void noteNearTrees(const WorldModel& model, WorldScratch& scratch) {
+  const auto may_be_refined = [](const TreeScratch& s) { return s.course.soft && !s.course.fine; };
+  if (std::none_of(scratch.trees.begin(), scratch.trees.end(), may_be_refined)) return;
   for (TreeScratch& s : scratch.trees) s.is_near = false;
   forEachContact(scratch, [&](const Contact& c) {
     for (const Side* side : {&c.a, &c.b}) {

@@ -9,7 +9,7 @@
 
 namespace pincer::engine {
 
-// Finds the trees that some contact of a link, a stop or a drive's limit was looked at for.
+// Finds the trees that some contact of a link, a stop or a drive's limit was looked at for, if any is to be refined.
 void noteNearTrees(const WorldModel& model, WorldScratch& scratch);
 
 // Refines the course of a tree, after gatherTrees and noteNearTrees, unless something is near it, one of its elements
