@@ -93,18 +93,6 @@ ShellContact Lookout::nearestWithin(double bound) {
   return contact;
 }
 
-void Lookout::lookOut() {
-  if (!isGood(contacts_.isAlone(), [&](int slot) { return contacts_.normalIn(slot); }) && !lookAlone()) {
-    tracker_.look = lookFromHere();
-    tracker_.tried = 0;
-  }
-  if (tracker_.look.is_alone) return;
-  NearParts& near = nearParts();
-  const bool are_all = isEveryonesTurn();
-  if (!(near.due > gone_) || are_all) examineDue(near, are_all);
-  if (!are_all && isEveryonesTurn()) examineDue(near, true);
-}
-
 void Lookout::end(const ShellContact& main) {
   constexpr double kTold = 2;  // turns: what was left out has its next one meanwhile
   if (contacts_.list().isFull() && gone_ - tracker_.full_at <= kTold * ball_.turn)

@@ -38,6 +38,18 @@ bool Lookout::isGood(bool is_alone, const NormalIn& normalIn) const {
   return true;
 }
 
+void Lookout::lookOut() {
+  if (!isGood(contacts_.isAlone(), [&](int slot) { return contacts_.normalIn(slot); }) && !lookAlone()) {
+    tracker_.look = lookFromHere();
+    tracker_.tried = 0;
+  }
+  if (tracker_.look.is_alone) return;
+  NearParts& near = nearParts();
+  const bool are_all = isEveryonesTurn();
+  if (!(near.due > gone_) || are_all) examineDue(near, are_all);
+  if (!are_all && isEveryonesTurn()) examineDue(near, true);
+}
+
 // A look that finds that nothing but the followed contact can matter for a while.
 bool Lookout::lookAlone() {
   if (surface_.variant != SurfaceVariant::smooth || !contacts_.isAlone()) return false;
