@@ -55,7 +55,6 @@ class IslandSolve {
     }
     is_loop_&& scratch_.h > 0 ? solveLoop() : solveOne();
     if (isInexact()) polish();
-    if (pushesInVain()) solveWithoutPushes();
     if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
       fit(PushingBy::kWedged);
       std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
@@ -90,50 +89,49 @@ class IslandSolve {
   // found if that fails; then contacts give way.
   void solveLoop() {
     if (!fitToTurnOfTrees()) fit(PushingBy::kLastTick);
-    SolverOptions giving = options_;
-    giving.largest_give = kLargestGive;
-    if (island_.contacts > kFewContacts) return solve(giving);
-    SolverOptions quick = options_;
-    quick.thorough = false;
-    solve(quick);
+    if (island_.contacts > kFewContacts) return solve(giving());
+    solve(quick());
     if (island_.result.converged) return;
     const bool is_small = island_.contacts < kManyContacts;
     fit(PushingBy::kImpulses);
-    solveAgain(is_small ? options_ : giving);
-    if (is_small && !island_.result.converged) solveAgain(giving);
+    solveAgain(is_small ? options_ : giving());
+    if (is_small && !island_.result.converged) solveAgain(giving());
+    if (pushesInVain()) solveWithoutPushes();
   }
 
-  // A body jammed between supports, whose friction holds it whatever pushes it out of them, may have no answer: then
-  // what contacts ask for is fitted to the impulses found, and they give way.
+  // A body that friction jams between supports may have no answer that pushes it out of them: then the pushes are left
+  // out. If that fails, what contacts ask for is fitted to the impulses found, and they give way.
   void solveOne() {
-    solve(options_);
-    if (island_.result.converged || island_.result.yields || !(scratch_.h > 0) || memory_.operations_left < 0) return;
+    const bool may_jam = island_.contacts <= kFewContacts && scratch_.h > 0;
+    solve(may_jam ? quick() : options_);
+    if (pushesInVain()) solveWithoutPushes();
+    if (may_jam && !isAnswered()) solveAgain(options_);
+    if (isAnswered() || !(scratch_.h > 0) || memory_.operations_left < 0) return;
     fit(PushingBy::kImpulses);
-    SolverOptions giving = options_;
-    giving.largest_give = kLargestGive;
-    solveAgain(giving);
+    solveAgain(giving());
   }
 
+  SolverOptions quick() const {
+    SolverOptions options = options_;
+    options.thorough = false;
+    return options;
+  }
+  SolverOptions giving() const {
+    SolverOptions options = options_;
+    options.largest_give = kLargestGive;
+    return options;
+  }
+  bool isAnswered() const { return island_.result.converged || island_.result.yields; }
   bool pushesInVain() const {
     return island_.contacts <= kFewContacts && scratch_.h > 0 && !island_.result.converged &&
-           island_.result.give == 0 && memory_.operations_left >= 0 && (island_.contacts == 1 || pushesLittle());
-  }
-  bool pushesLittle() const {
-    const auto is_little = [&](int i) { return isLittle(scratch_.contacts[static_cast<std::size_t>(i)].phi); };
-    return std::all_of(order_.begin(), order_.end(), is_little);
-  }
-  // Or it is pushed out, whatever holds it (push_out.h).
-  bool isLittle(double phi) const { return phi >= -kDeepSpeed / kNormalCorrection * tick_; }
-  bool pressesWhereItOverlaps() const {
-    for (int n = 0; n < island_.contacts; ++n) {
-      const auto normal = static_cast<std::size_t>(problem_.firstRow(n) + kNormalRow);
-      if (memory_.pushes[normal] < 0 && !(island_.r[normal] > 0)) return false;
-    }
-    return true;
+           island_.result.give == 0 && memory_.operations_left >= 0;
   }
 
-  // A body that friction jams, or holds where it grazes an edge, has an answer if contacts only stop what closes: the
-  // overlap stays for as long as it sticks. Walls that close have none: there pushes keep the thing in the middle.
+  // What doesn't move gives contacts that only stop what closes an answer always: no motion at all obeys them. (V. Acary,
+  // F. Cadoux, C. Lemarechal, J. Malick, Z. Angew. Math. Mech. 91 (2011) 155, section 4: it exists where some motion
+  // does.) So overlaps of a body that friction jams, or holds where it grazes an edge, stay for as long as it sticks,
+  // but for what push_out.h undoes. Walls that close on what is between them keep it in the
+  // middle by their pushes.
   void solveWithoutPushes() {
     const SolveResult pushed = island_.result;
     std::copy(island_.r, island_.r + island_.rows, memory_.kept_r.begin());
@@ -141,13 +139,25 @@ class IslandSolve {
     dropPushes();
     std::fill(island_.r, island_.r + island_.rows, 0.0);
     solveAgain(options_);
-    if (island_.result.converged && (island_.contacts == 1 || pressesWhereItOverlaps())) return keepOverlaps();
+    if (!island_.result.converged) searchOn();
+    const bool is_better = island_.result.converged || island_.result.error < pushed.error;
+    if (is_better && (!pushed.yields || holdsWithoutPushes())) return keepOverlaps();
     pushAgain();
     std::copy(memory_.kept_r.begin(), memory_.kept_r.begin() + island_.rows, island_.r);
     std::copy(memory_.kept_u.begin(), memory_.kept_u.begin() + island_.rows, island_.u);
     const int iterations = island_.result.iterations;
     island_.result = pushed;
     island_.result.iterations = iterations;
+  }
+  // All that overlaps does so by little, and presses.
+  bool holdsWithoutPushes() const {
+    for (int n = 0; n < island_.contacts; ++n) {
+      const auto normal = static_cast<std::size_t>(problem_.firstRow(n) + kNormalRow);
+      const double phi = scratch_.contacts[static_cast<std::size_t>(order_[static_cast<std::size_t>(n)])].phi;
+      if (!(phi >= -kDeepSpeed / kNormalCorrection * tick_)) return false;
+      if (memory_.pushes[normal] < 0 && !(island_.r[normal] > 0)) return false;
+    }
+    return true;
   }
 
   // Strictness asks for more than was found: where friction is used up at no slip, Newton's method for few contacts
@@ -159,12 +169,16 @@ class IslandSolve {
            found.residual > exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_));
   }
   void polish() {
+    const SolveMethod method = island_.result.method;
+    searchOn();
+    island_.result.converged = true;
+    island_.result.method = method;
+  }
+  void searchOn() {
     const SolveResult first = island_.result;
-    SolveResult& found = island_.result = searchImpulses(problem_, options_, memory_, island_.r, island_.u);
-    found.iterations += first.iterations;
-    found.start = first.start;
-    found.converged = true;
-    found.method = first.method;
+    island_.result = searchImpulses(problem_, options_, memory_, island_.r, island_.u);
+    island_.result.iterations += first.iterations;
+    island_.result.start = first.start;
   }
 
   void fit(PushingBy pushing) {
@@ -218,7 +232,7 @@ class IslandSolve {
     forEachRow([&](Contact& c, int k, int row) {
       if (k != kNormalRow && c.stuck)
         c.offset_C[k] = -0.5 * scratch_.h * c.v_start_C[k];
-      else if (k == kNormalRow && memory_.pushes[static_cast<std::size_t>(row)] < 0 && isLittle(c.phi))
+      else if (k == kNormalRow && memory_.pushes[static_cast<std::size_t>(row)] < 0)
         c.offset_C[k] = std::min(c.phi, 0.0);
     });
   }
