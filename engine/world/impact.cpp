@@ -63,13 +63,14 @@ double normalVelocity(const WorldScratch& scratch, const Contact& c) {
   return c.n_W().dot(v_a - v_b);
 }
 
-// True if the pair touches without closing: it has hit in this tick, and now slides.
-bool hasLanded(const WorldScratch& scratch, const ImpactPair& pair) {
-  return std::any_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) {
-    if (!isOfBodies(c, pair.a, pair.b)) return false;
-    const double u = normalVelocity(scratch, c);
-    return std::abs(u) < kClosingSpeed && c.phi - 0.5 * scratch.h * u < kTouching;
-  });
+// What it hits without a bounce is a contact from then on.
+void noteLanded(WorldScratch& scratch) {
+  std::vector<ImpactPair>& landed = scratch.landed_pairs;
+  for (const Contact& c : scratch.contacts) {
+    if (c.a.kind != SideKind::kBody || c.b.kind != SideKind::kBody) continue;
+    if (!c.active() || c.bias_C[kNormalRow] != 0 || isNoted(landed, c.a.index, c.b.index)) continue;
+    if (landed.size() < landed.capacity()) landed.push_back({c.a.index, c.b.index});
+  }
 }
 
 // A contact that closes in this tick, if nothing holds it up, and then bounces.
@@ -88,7 +89,7 @@ void holdBackHits(const WorldModel& model, const WorldState& state, WorldScratch
   for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
     for (const ImpactPair& pair : *pairs) {
       if (isNoted(scratch.impact_pairs, pair.a, pair.b) || isTouching(model, state, pair.a, pair.b) ||
-          hasLanded(scratch, pair))
+          isNoted(scratch.landed_pairs, pair.a, pair.b))
         continue;
       PINCER_ASSERT(scratch.impact_pairs.size() < scratch.impact_pairs.capacity());  // the tick allocates nothing
       scratch.impact_pairs.push_back(pair);
@@ -337,7 +338,7 @@ void holdBackImpacts(const WorldModel& model, const WorldState& state, bool land
 bool impactsWait(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
   for (const auto* pairs : {&scratch.fast_pairs, &scratch.pushed_pairs}) {
     for (const ImpactPair& pair : *pairs) {
-      if (!isTouching(model, state, pair.a, pair.b) && !hasLanded(scratch, pair)) return true;
+      if (!isTouching(model, state, pair.a, pair.b) && !isNoted(scratch.landed_pairs, pair.a, pair.b)) return true;
     }
   }
   return model.bounces && std::any_of(scratch.contacts.begin(), scratch.contacts.end(), [&](const Contact& c) {
@@ -379,6 +380,7 @@ bool applyImpacts(const WorldModel& model, WorldState& state, WorldScratch& scra
     if (!BroughtIn(scratch).isMore() || !somethingBounces(scratch)) break;
   }
   takeOutEnergy(model, scratch);
+  noteLanded(scratch);
   const bool turns_too_far = limitTurns(model, scratch);
   if (!model.trees.empty()) strikeTrees(model, state, scratch);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {

@@ -73,6 +73,7 @@ WorldScratch::WorldScratch(const WorldModel& model)
   tried.reserve(contact_count);
   fast_pairs.reserve(contact_count);
   pushed_pairs.reserve(contact_count);
+  landed_pairs.reserve(contact_count);
   impact_pairs.reserve(3 * contact_count);
   for (const JointGroup& group : model.joint_groups) {
     const auto rows = static_cast<std::size_t>(group.count) * kMostJointRows;

@@ -179,6 +179,7 @@ struct WorldScratch {
   std::vector<ImpactPair> fast_pairs;
   std::vector<ImpactPair> pushed_pairs;  // get that fast in this tick (notePushedPairs); capacity as contacts
   std::vector<ImpactPair> impact_pairs;  // hit each other in this part of the tick, or may (impact.h)
+  std::vector<ImpactPair> landed_pairs;  // hit each other in this tick without a bounce; capacity as contacts
   std::vector<JointGroupScratch> joint_groups;
   std::vector<TreeScratch> trees;
   std::vector<JointRowScratch> joint_rows;  // three per coordinate of all trees, one per drive, and what doesn't move

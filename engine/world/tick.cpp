@@ -131,6 +131,7 @@ class Tick {
     impacts_ = landings_ = 0;
     last_pair_ = last_hit_ = {-1, -1};
     scratch_.pushed_pairs.clear();
+    scratch_.landed_pairs.clear();
     scratch_.tried.clear();
     is_tried_ = false;
     report_ = {};
