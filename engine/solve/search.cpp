@@ -338,7 +338,8 @@ class Search {
   }
 
   void sweep() {
-    const double enough = std::max(kMostAccuracies * options_.accuracy, options_.tolerance * referenceSpeed(problem_));
+    const double content = problem_.contactCount() <= kFewContacts ? limit() : kMostAccuracies * options_.accuracy;
+    const double enough = std::max(content, options_.tolerance * referenceSpeed(problem_));
     respond(problem_, scratch_.best_r.data(), scratch_);
     error_ = respondedError(problem_, scratch_.best_r.data(), scratch_, scratch_.best_u.data());
     const SweptResult sweeps =
