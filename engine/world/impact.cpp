@@ -63,7 +63,7 @@ double normalVelocity(const WorldScratch& scratch, const Contact& c) {
   return c.n_W().dot(v_a - v_b);
 }
 
-// What it hits without a bounce is a contact from then on.
+// A pair that hit without a bounce is one that touches from then on.
 void noteLanded(WorldScratch& scratch) {
   std::vector<ImpactPair>& landed = scratch.landed_pairs;
   for (const Contact& c : scratch.contacts) {

@@ -127,11 +127,10 @@ class IslandSolve {
            island_.result.give == 0 && memory_.operations_left >= 0;
   }
 
-  // What doesn't move gives contacts that only stop what closes an answer always: no motion at all obeys them. (V. Acary,
-  // F. Cadoux, C. Lemarechal, J. Malick, Z. Angew. Math. Mech. 91 (2011) 155, section 4: it exists where some motion
-  // does.) So overlaps of a body that friction jams, or holds where it grazes an edge, stay for as long as it sticks,
-  // but for what push_out.h undoes. Walls that close on what is between them keep it in the
-  // middle by their pushes.
+  // Contacts with what doesn't move that only stop what closes have an answer always: no motion at all obeys them (V.
+  // Acary, F. Cadoux, C. Lemarechal, J. Malick, Z. Angew. Math. Mech. 91 (2011) 155). So overlaps of a body that
+  // friction jams, or holds where it grazes an edge, stay for as long as it sticks, but for what push_out.h undoes.
+  // Walls that close on what is between them keep it in the middle by their pushes.
   void solveWithoutPushes() {
     const SolveResult pushed = island_.result;
     std::copy(island_.r, island_.r + island_.rows, memory_.kept_r.begin());
