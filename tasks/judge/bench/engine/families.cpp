@@ -129,6 +129,25 @@ Measurement heapMeasurement(const std::string& name, const std::function<FamilyW
           }};
 }
 
+// Pegs that fall onto their holes, tip and jam there.
+Measurement randomPegsMeasurement(int pegs) {
+  return {"pegs/random", [=](MeasureContext& context) {
+            FamilyRun all;
+            for (int n = 1; n <= pegs && !context.interrupted(); ++n) {
+              context.progress(static_cast<double>(n) / pegs);
+              const FamilyRun run = FamilyRunner(randomPegWorld(static_cast<std::uint64_t>(n))).run(0.7, context);
+              all.us.insert(all.us.end(), run.us.begin(), run.us.end());
+              all.flagged += run.flagged;
+              all.error = std::max(all.error, run.error);
+            }
+            const double flagged = 100.0 * all.flagged / static_cast<double>(std::max<std::size_t>(1, all.us.size()));
+            // 2e-3 are those of 400; two of 40's 28,000 ticks
+            std::vector<Record> records = {atMost(fmt::format("ticks flagged of {} pegs", pegs), flagged, "%", 8e-3)};
+            addCosts(all, records);
+            return records;
+          }};
+}
+
 }  // namespace
 
 std::vector<Measurement> familyMeasurements(bool whole) {
@@ -149,6 +168,7 @@ std::vector<Measurement> familyMeasurements(bool whole) {
   for (const double play : {5e-5, 1e-4, 2e-4})
     all.push_back(heapMeasurement(
         fmt::format("pegs/play-{}um", 1e6 * play), [=] { return pegWorld(play, 8e-3); }, 0.5, 20));
+  all.push_back(randomPegsMeasurement(whole ? 400 : 40));
   if (!whole) return all;
   for (const auto& [columns, rows] : {std::pair(20, 6), {20, 10}, {40, 20}})
     all.push_back(wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows},

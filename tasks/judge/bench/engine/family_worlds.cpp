@@ -133,17 +133,48 @@ FamilyWorld ballWorld(int balls, int side, std::uint64_t seed) {
   return maker.make();
 }
 
-FamilyWorld pegWorld(double play, double tilt) {
-  constexpr double kRadius = 0.01, kHalfLength = 0.03;  // [m]
-  WorldMaker maker(0.2, false);
-  const double bottom = 0.015, hole = kRadius + 0.5 * play;  // the floor lies below the hole
-  for (int k = 0; k < 8; ++k) {
-    const Quat q = quatFromRotationVector(0.25 * M_PI * k * Vec3::UnitZ());
-    maker.add(fmt::format("rim{}", k), contact::Box{{0.01, 0.02, 0.02}}, 0, q * Vec3(hole + 0.01, 0, bottom + 0.02), q);
+namespace {
+
+struct Peg {
+  int boxes = 8;
+  double radius = 0.01, half_length = 0.03;  // [m]
+  double play = 1e-4;                        // [m]
+  double mu = 0.2;                           // [-]
+  double tilt = 0, heading = 0;              // about an axis in the plane, at that angle to x [rad]
+  double off = 0;                            // along x [m]
+};
+
+FamilyWorld pegWorldOf(const Peg& peg) {
+  WorldMaker maker(peg.mu, false);
+  constexpr double kBottom = 0.015;  // the floor lies below the hole [m]
+  const double hole = peg.radius + 0.5 * peg.play;
+  for (int k = 0; k < peg.boxes; ++k) {
+    const Quat q = quatFromRotationVector(2 * M_PI / peg.boxes * k * Vec3::UnitZ());
+    maker.add(fmt::format("rim{}", k), contact::Box{{0.01, 0.02, 0.02}}, 0, q * Vec3(hole + 0.01, 0, kBottom + 0.02),
+              q);
   }
-  const Quat q = quatFromRotationVector(tilt * Vec3::UnitX());
-  maker.add("peg", contact::Cylinder{kRadius, kHalfLength}, 0.1, Vec3(0, 0, bottom + 0.04 + kHalfLength + 0.001), q);
+  const Vec3 axis(math::cos(peg.heading), math::sin(peg.heading), 0);
+  maker.add("peg", contact::Cylinder{peg.radius, peg.half_length}, 0.1,
+            Vec3(peg.off, 0, kBottom + 0.04 + peg.half_length + 0.001), quatFromRotationVector(peg.tilt * axis));
   return maker.make();
+}
+
+}  // namespace
+
+FamilyWorld pegWorld(double play, double tilt) { return pegWorldOf({.play = play, .tilt = tilt}); }
+
+FamilyWorld randomPegWorld(std::uint64_t seed) {
+  Uniform uniform(seed);
+  Peg peg;
+  peg.boxes = 6 + static_cast<int>(uniform(0, 7));
+  peg.radius = uniform(0.006, 0.015);
+  peg.half_length = peg.radius * uniform(1.5, 4);
+  peg.play = 3e-5 * std::pow(20, uniform(0, 1));
+  peg.mu = uniform(0.1, 0.8);
+  peg.tilt = uniform(0, 0.03);
+  peg.heading = uniform(0, 2 * M_PI);
+  peg.off = peg.play * uniform(-0.4, 0.4);
+  return pegWorldOf(peg);
 }
 
 }  // namespace pincer::tasks

@@ -37,4 +37,8 @@ FamilyWorld ballWorld(int balls, int side, std::uint64_t seed);
 // `play` [m]; mu 0.2. The peg is the last body.
 FamilyWorld pegWorld(double play, double tilt);
 
+// A cylinder of 6 to 15 mm radius, 1.5 to 4 times as long, tilted by up to 30 mrad in any direction, into six to twelve
+// boxes; play 30 to 600 um, evenly in its logarithm, and off the middle by up to .4 of it; mu 0.1 to 0.8.
+FamilyWorld randomPegWorld(std::uint64_t seed);
+
 }  // namespace pincer::tasks
