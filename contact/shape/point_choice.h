@@ -14,8 +14,12 @@
 // of near, carrying ones, and the body falls from one set of corners to the next for ever; d / (g + s) favours the low
 // side of a tilted face so much that its far side is missing when it lands. Six or eight points: meshes came to rest no
 // sooner, and the solver paid.) A score must be better by a hundredth to win over a smaller feature: the points of a
-// resting body don't change with round-off. Cost: one scan over all points and four over those within the margin. More
-// than 256 of these are not listed (no memory is allocated) but found again by each scan.
+// resting body don't change with round-off. Cost: one scan over all points and four over those within the margin, where
+//
+//   d <= |p - p_k| + s   for each chosen p_k: none is further than s outside an edge
+//
+// A point that couldn't win even so far outside is passed by: its edges aren't looked at.
+// More than 1024 of these are not listed (no memory is allocated) but found again by each scan.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -49,7 +53,12 @@ class PointChoice {
   const Chosen& operator[](int i) const { return chosen_[i]; }  // by ascending index
 
  private:
-  static constexpr int kListed = 256;  // chosen; more points are found again by each scan
+  static constexpr int kListed = 1024;  // chosen, 24 KB; more points are found again by each scan
+  static constexpr double kUnknown = std::numeric_limits<double>::infinity();  // [m^2]
+
+  struct Near : Chosen {
+    double reach2;  // no less than the square of d [m^2]
+  };
 
   // From a chosen point to another, none to the right of it; two points have two edges, there and back.
   struct Edge {
@@ -72,19 +81,19 @@ class PointChoice {
     for (int i = 0; i < candidates(); ++i) {
       const double gap = gapOf(i);
       if (!(gap < margin_)) continue;
-      if (near_count_ < kListed) near_[near_count_] = {i, gap};
+      if (near_count_ < kListed) near_[near_count_] = {{i, gap}, kUnknown};
       ++near_count_;
       deepest_ = std::min(deepest_, gap);
     }
   }
 
   template <class Visit>
-  void forEachNear(Visit visit) const {
+  void forEachNear(Visit visit) {
     if (near_count_ <= kListed)
       return static_cast<void>(std::for_each(near_.begin(), near_.begin() + near_count_, visit));
     for (int i = 0; i < candidates(); ++i) {
-      const double gap = gapOf(i);
-      if (gap < margin_) visit(Chosen{i, gap});
+      Near found{{i, gapOf(i)}, kUnknown};
+      if (found.gap < margin_) visit(found);
     }
   }
 
@@ -115,9 +124,14 @@ class PointChoice {
     joinEdges();
     double best = 0;
     Chosen next{-1, 0};
-    forEachNear([&](const Chosen& c) {
-      const double d = outside(solid_.points[c.index]);
-      const double score = d > 0 ? d * d / (kSameGap + c.gap - deepest_) : 0;
+    const Vec3 last = chosenPoint(count_ - 1);
+    forEachNear([&](Near& c) {
+      const Vec3& p = solid_.points[c.index];
+      const double higher = kSameGap + c.gap - deepest_;
+      c.reach2 = std::min(c.reach2, reachFrom((p - last).squaredNorm()));
+      if (!(c.reach2 > kBetter * best * higher)) return;
+      const double d = outside(p);
+      const double score = d > 0 ? d * d / higher : 0;
       if (!(score > kBetter * best) || anyChosen([&](const Chosen& other) { return other.index == c.index; })) return;
       best = score;
       next = c;
@@ -125,6 +139,12 @@ class PointChoice {
     if (next.index < 0) return false;
     chosen_[count_++] = next;
     return true;
+  }
+
+  // (a + s)^2 <= (1 + x) a^2 + (1 + 1/x) s^2 for any x > 0; it is also more than round-off adds.
+  static double reachFrom(double a2) {
+    constexpr double x = 0.01;
+    return (1 + x) * a2 + (1 + 1 / x) * kSameGap * kSameGap;
   }
 
   // How far `p` is outside the polygon of the chosen points; where it is nearest to a corner, a little less.
@@ -163,7 +183,7 @@ class PointChoice {
   int count_ = 0;
   std::array<Edge, kMaxEdges> edges_{};
   int edge_count_ = 0;
-  std::array<Chosen, kListed> near_;  // of near_count_ points within the margin, the first
+  std::array<Near, kListed> near_;  // of near_count_ points within the margin, the first
   int near_count_ = 0;
 };
 
