@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <string>
+#include <vector>
 
+#include "pincer/contact/error.h"
+#include "pincer/engine/model.h"
 #include "pincer/tasks/run/scene/scene_keys.h"
 #include "pincer/tasks/run/scene/scene_parts.h"
 
@@ -150,6 +154,65 @@ int addSliders(const JsonValue& json, const engine::BodySpec& tip, int carrier, 
   return last;
 }
 
+// True if joints lead from the body to the world, or to what stands still or is driven.
+bool hangsOnTheWorld(const Scene& scene, int body) {
+  std::vector<bool> reached(scene.bodies.size());
+  std::vector<int> left = {body};
+  while (!left.empty()) {
+    const int at = left.back();
+    left.pop_back();
+    if (at < 0 || !scene.bodies[static_cast<std::size_t>(at)].dynamic) return true;
+    if (reached[static_cast<std::size_t>(at)]) continue;
+    reached[static_cast<std::size_t>(at)] = true;
+    for (const engine::JointModel& joint : scene.joints) {
+      if (joint.a == at) left.push_back(joint.b);
+      if (joint.b == at) left.push_back(joint.a);
+    }
+  }
+  return false;
+}
+
+// In the body's frame. Of one that can't be built zero: it is refused when the world is, by its line.
+Vec3 centerOfMass(const engine::BodySpec& spec, const engine::WorldOptions& options) {
+  try {
+    engine::WorldBuilder alone(options);
+    alone.addBody(spec);
+    return alone.build().bodies[0].X_BI.p;
+  } catch (const InputError&) {
+    return Vec3::Zero();
+  }
+}
+
+// Springs need a tree that hangs on the world: three sliders and a ball joint at its centre of mass leave a free body
+// as free as it was.
+void holdFreely(const JsonValue& json, int body, SceneNames& names, Scene& scene) {
+  const std::string name = scene.bodies[static_cast<std::size_t>(body)].name;
+  const engine::BodyStart start = scene.starts[static_cast<std::size_t>(body)];
+  const Vec3 center_B = centerOfMass(scene.bodies[static_cast<std::size_t>(body)], scene.options);
+  engine::BodyStart moved{{Quat::Identity(), start.X_WB * center_B}, Vec3::Zero(), Vec3::Zero()};
+  const Pose X_WF = moved.X_WB;
+  const auto add = [&](engine::JointModel joint, const std::string& joint_name) {
+    joint.name = joint_name;
+    names.take(joint.name, json);
+    scene.joints.push_back(joint);
+    scene.joint_lines.push_back(json.line());
+  };
+  int last = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string slide = fmt::format("{}_{}", name, keys::kAxes[static_cast<std::size_t>(axis)]);
+    moved.v_W[axis] = start.v_W[axis];
+    const int between = addBodyThere(bodyBetween(slide + "_carried"), json, moved, names, scene);
+    add(sliderAlong(axis, between, last, last < 0 ? X_WF : Pose{}), slide);
+    last = between;
+  }
+  engine::JointModel ball;
+  ball.kind = engine::JointKind::kBall;
+  ball.a = body;
+  ball.b = last;
+  ball.X_AJ.p = center_B;
+  add(ball, name + "_turn");
+}
+
 }  // namespace
 
 void addCarriedFinger(const JsonValue& json, const std::string& usual_name, SceneNames& names, Scene& scene) {
@@ -161,6 +224,7 @@ void addCarriedFinger(const JsonValue& json, const std::string& usual_name, Scen
                   readVector(json, "position", ranges::kCoordinate)};
   const JsonValue* name = json.find("name");
   const engine::BodySpec tip = readTipBody(json, name ? name->text() : usual_name, scene.file);
+  if (!hangsOnTheWorld(scene, carrier)) holdFreely(json, carrier, names, scene);
   const int body = addSliders(json, tip, carrier, X_CF, names, scene);
   scene.pairs.push_back({carrier, body, false, {}});
   scene.pair_lines.push_back(json.line());

@@ -106,5 +106,51 @@ TEST(BuiltinScenes, ThoseOfRobotsNeedNoFile) {
   }
 }
 
+// A free brick whose centre of mass isn't its origin, thrown and spinning, with a finger far from all else: together
+// they fall as one body would, and turn about their centre.
+TEST(CarriedFinger, OnAFreeBodyLeavesItFree) {
+  for (const char* mass : {"", R"(, "mass": 0.02)"}) {
+    Simulation sim(parseScene(fmt::format(R"({{"version": 1, "duration": 0.5, "bodies": [
+        {{"name": "brick", "mass": 0.3, "position": [0, 0, 1], "rotation": [0.2, 0.4, -0.3], "velocity": [0.4, -0.2, 1],
+          "angular_velocity": [1, 2, -3], "shapes": [
+          {{"shape": {{"type": "box", "size": [0.1, 0.04, 0.06]}}, "position": [0.03, 0.01, 0]}}]}}],
+        "fingers": [{{"name": "tip", "on": "brick", "position": [0.1, 0, 0], "stiffness": 500, "damping": 2{}}}]}})",
+                                          mass),
+                              "s.json"));
+    const auto momentum = [&] {
+      Vec3 sum = Vec3::Zero();
+      const Moment moment = sim.moment();
+      for (std::size_t i = 0; i < moment.state.world.bodies.size(); ++i)
+        sum += sim.model().world.bodies[i].mass * moment.state.world.bodies[i].v_W;
+      return sum;
+    };
+    double weight = 0;
+    for (const engine::BodyModel& body : sim.model().world.bodies) weight += body.mass * 9.81;
+    const Vec3 start = momentum();
+    EXPECT_NEAR(sim.moment().state.world.bodies[0].v_W.x(), 0.4, 1e-12);
+    EXPECT_NEAR(sim.moment().state.world.bodies[0].v_W.z(), 1, 1e-12);
+    while (sim.ticks() < sim.scene().ticks()) ASSERT_EQ(sim.tick().status, engine::kStepOk) << sim.time();
+    // Two of the micrograms between it and the world don't fall.
+    EXPECT_LT((momentum() - start - Vec3(0, 0, -weight * 0.5)).norm(), 2e-9 * 9.81 * 0.5 + 1e-12) << mass;
+    EXPECT_GT(readOf(sim, "brick.rotation"), 0.5);
+  }
+}
+
+// It comes down on its finger, and rests.
+TEST(CarriedFinger, OnAFreeBodyBearsIt) {
+  Simulation sim(parseScene(R"({"version": 1, "duration": 4, "bodies": [
+      {"name": "floor", "static": true, "shape": {"type": "half_space"}},
+      {"name": "foot", "shape": {"type": "box", "size": [0.1, 0.1, 0.02]}, "mass": 0.2, "position": [0, 0, 0.05]}],
+    "fingers": [
+      {"name": "a", "on": "foot", "position": [0.03, 0.03, -0.02], "stiffness": 800, "damping": 8, "radius": 0.005},
+      {"name": "b", "on": "foot", "position": [-0.03, 0.03, -0.02], "stiffness": 800, "damping": 8, "radius": 0.005},
+      {"name": "c", "on": "foot", "position": [0, -0.03, -0.02], "stiffness": 800, "damping": 8, "radius": 0.005}]})",
+                            "s.json"));
+  while (sim.ticks() < sim.scene().ticks()) sim.tick();
+  EXPECT_NEAR(readOf(sim, "floor|a.f_z") + readOf(sim, "floor|b.f_z") + readOf(sim, "floor|c.f_z"), -0.2 * 9.81, 1e-6);
+  EXPECT_LT(readOf(sim, "foot.speed"), 1e-9);
+  EXPECT_NEAR(readOf(sim, "foot.p_z"), 0.025 - 0.375 * 0.2 * 9.81 / 800, 1e-5);  // a and b bear a quarter each, c half
+}
+
 }  // namespace
 }  // namespace pincer::tasks
