@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/world/drive_rows.h"
 
 namespace pincer::engine {
 namespace {
@@ -71,10 +72,12 @@ void copyState(const WorldState& from, WorldState& to) {
   std::copy(from.contacts.begin(), from.contacts.begin() + from.contact_count, to.contacts.begin());
 }
 
-// The controls are those of the last tick, and lead nowhere.
-bool sameControls(std::span<const DriveInput> controls, const WorldState& state) {
-  return std::equal(controls.begin(), controls.end(), state.controls.begin(),
-                    state.controls.begin() + std::ssize(controls));
+// The controls are those of the last tick, and lead nowhere. The state remembers them cut off at their drives' ranges.
+bool sameControls(const WorldModel& model, std::span<const DriveInput> controls, const WorldState& state) {
+  for (std::size_t d = 0; d < controls.size(); ++d) {
+    if (withinControls(model.drives[d], controls[d]) != state.controls[d]) return false;
+  }
+  return true;
 }
 
 bool isStill(const WorldState& state) {
@@ -85,9 +88,10 @@ bool isStill(const WorldState& state) {
 
 }  // namespace
 
-bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs) {
+bool repeatsItself(const WorldModel& model, const WorldState& state, const WorldScratch& scratch,
+                   const StepInputs& inputs) {
   const RestMemory& rest = scratch.sleep.rest;
-  return rest.holds && sameControls(inputs.controls, state) &&
+  return rest.holds && sameControls(model, inputs.controls, state) &&
          sameRange(inputs.points, std::span<const PointInput>(rest.points)) &&
          sameRange(inputs.motions, std::span<const MotionInput>(rest.motions)) &&
          inputs.applied.gravity_W == rest.gravity_W &&

@@ -29,7 +29,8 @@ bool same(const ContactMemory& a, const ContactMemory& b);
 bool same(const MotionInput& a, const MotionInput& b);
 
 // True if the tick from `state` with these inputs ends where it starts.
-bool repeatsItself(const WorldState& state, const WorldScratch& scratch, const StepInputs& inputs);
+bool repeatsItself(const WorldModel& model, const WorldState& state, const WorldScratch& scratch,
+                   const StepInputs& inputs);
 
 // Notes how a tick with these inputs ended. `calm`: nothing happened in it that state and inputs don't show.
 void noteRest(const WorldState& state, const StepInputs& inputs, bool calm, WorldScratch& scratch);

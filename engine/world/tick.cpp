@@ -39,7 +39,8 @@ class Tick {
       : model_(model), state_(state), scratch_(scratch), inputs_(inputs), source_(source), left_(model.options.h) {}
 
   StepReport run() {
-    if (model_.options.sleep && repeatsItself(state_, scratch_, inputs_) && (!source_ || source_->repeatsItself()))
+    if (model_.options.sleep && repeatsItself(model_, state_, scratch_, inputs_) &&
+        (!source_ || source_->repeatsItself()))
       return sleep();
     applyForces();
     scratch_.contacts_dropped = false;

@@ -112,5 +112,42 @@ TEST(Rest, LeavesSlowMotionAlone) {
   EXPECT_NEAR(state.bodies[1].X_WI.p.x(), 2e-9, 1e-15);
 }
 
+// A drive that was told more than its range never slept: the state remembers what it was told cut off.
+TEST(Rest, ADriveToldMoreThanItsRangeSleeps) {
+  for (const double sign : {1.0, -1.0}) {
+    WorldBuilder builder{WorldOptions{}};
+    builder.addBody({"slide", contact::Box{Vec3::Constant(0.01)}, true, 0.1, {}});
+    JointModel rail{JointKind::kSlider, 0, -1, {}, {}, 0};
+    rail.traits.lower = -0.1;
+    rail.traits.upper = 0.1;
+    DriveModel servo;
+    servo.terms = {{builder.addJoint(rail), 1}};
+    servo.control = DriveModel::Control::kPosition;
+    servo.stiffness = 1e4;
+    servo.damping = 100;
+    servo.lower_control = -0.05;
+    servo.upper_control = 0.05;
+    builder.addDrive(servo);
+    const WorldModel model = builder.build();
+    WorldState state = makeState(model, {startAt(Vec3::Zero())}, {});
+    WorldScratch scratch(model);
+    const auto told = [&](double control) {
+      const DriveInput input{control, 0, false};
+      StepInputs inputs;
+      inputs.controls = {&input, 1};
+      return step(model, state, scratch, inputs).asleep;
+    };
+    bool asleep = false;
+    for (int i = 0; i < 2000; ++i) asleep = told(sign * 0.07);
+    EXPECT_TRUE(asleep);
+    EXPECT_NEAR(jointPosition(model, state, 0), sign * 0.05 - 0.1 * 9.81 / 1e4, 1e-9);
+    EXPECT_TRUE(told(sign * 0.08));   // cut off where the last one was
+    EXPECT_FALSE(told(sign * 0.03));  // within the range: it moves
+    for (int i = 0; i < 2000; ++i) asleep = told(sign * 0.03);
+    EXPECT_TRUE(asleep);
+    EXPECT_NEAR(jointPosition(model, state, 0), sign * 0.03 - 0.1 * 9.81 / 1e4, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace pincer::engine
