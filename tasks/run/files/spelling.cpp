@@ -55,6 +55,7 @@ std::string_view closestWord(std::string_view word, std::span<const std::string_
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates) {
   const std::string_view closest = closestWord(word, candidates);
   if (!closest.empty()) return fmt::format(" Did you mean \"{}\"?", closest);
+  if (candidates.empty()) return " None is known here.";
   constexpr std::size_t kMost = 30;  // names in a scene may be thousands
   const auto shown = candidates.first(std::min(kMost, candidates.size()));
   const std::string more =

@@ -15,7 +15,7 @@ int editDistance(std::string_view a, std::string_view b);
 // Looks only at candidates whose length is that close: their number, not the word's length, says how long it takes.
 std::string_view closestWord(std::string_view word, std::span<const std::string_view> candidates);
 
-// " Did you mean "mass"?", or the list of candidates (the first 30) when none is close.
+// " Did you mean "mass"?", or the list of candidates (the first 30, if any) when none is close.
 std::string suggestion(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace pincer::tasks

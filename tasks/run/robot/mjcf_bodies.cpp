@@ -81,8 +81,9 @@ class BodyReader {
   void addJoint(const XmlElement& element, const Surroundings& around, RobotJoint joint) {
     if (around.body < 0) element.reject("stands in the world, which doesn't move.");
     RobotBody& body = robot_.bodies[static_cast<std::size_t>(around.body)];
-    if (joint.kind == RobotJointKind::kFree && (body.parent >= 0 || !body.joints.empty()))
-      element.reject("goes with bodies of the world that have no other joint.");
+    const bool joins_a_free_one = !body.joints.empty() && body.joints.front().kind == RobotJointKind::kFree;
+    if (joins_a_free_one || (joint.kind == RobotJointKind::kFree && (body.parent >= 0 || !body.joints.empty())))
+      element.reject("doesn't go there: a free joint is the only joint of a body of the world.");
     if (joint.kind == RobotJointKind::kBall && joint.limits)
       element.reject("limits a ball joint, which isn't known here. Make it of three hinges, or leave the range out.");
     if (body.is_driven) element.reject("holds a mocap body, which goes where it is told.");
@@ -179,6 +180,38 @@ void scaleMasses(Robot& robot, double wanted) {
   }
 }
 
+// Its own mass, that of all that hangs on it, and armatures: something that its joints move.
+void requireSomethingToMove(const Robot& robot) {
+  std::vector<double> inertias;
+  for (const RobotBody& body : robot.bodies) {
+    double& sum = inertias.emplace_back(body.inertia.mass);
+    for (const RobotJoint& joint : body.joints) sum += joint.armature;
+  }
+  for (std::size_t i = robot.bodies.size(); i-- > 0;) {  // parents come first
+    const RobotBody& body = robot.bodies[i];
+    if (!body.joints.empty() && !(inertias[i] > 0))
+      throw InputError(printableMessage(
+          fmt::format("{}: joint \"{}\" moves no mass: neither body \"{}\" nor what hangs on it has any. Give a geom a "
+                      "mass, or the joint an armature.",
+                      body.joints.front().place, body.joints.front().name, body.name)));
+    if (body.parent >= 0) inertias[static_cast<std::size_t>(body.parent)] += inertias[i];
+  }
+}
+
+void refuseMovingPlanes(const Robot& robot) {
+  std::vector<bool> moves;
+  for (const RobotBody& body : robot.bodies) {
+    moves.push_back(!body.joints.empty() || (body.parent >= 0 && moves[static_cast<std::size_t>(body.parent)]));
+    if (!moves.back()) continue;
+    for (const RobotGeom& geom : body.geoms) {
+      if (geom.shape == RobotShape::kPlane)
+        throw InputError(printableMessage(
+            fmt::format("{}: <geom> is a plane on body \"{}\", which moves. Planes stand still: make it a box.",
+                        geom.place, body.name)));
+    }
+  }
+}
+
 void nameJoints(Reading& reading) {
   int coordinates = 0;
   for (const RobotBody& body : reading.robot.bodies) {
@@ -201,6 +234,8 @@ void readBodies(Reading& reading) {
     const std::string* name = section->find("childclass");
     reader.readChildren(*section, {-1, {}, name ? classNamed(reading.document, *name, *section) : 0});
   }
+  requireSomethingToMove(reading.robot);
+  refuseMovingPlanes(reading.robot);
   scaleMasses(reading.robot, reading.compiler().total_mass);
   nameJoints(reading);
 }

@@ -11,7 +11,7 @@ constexpr std::string_view kBodiesAndDefault = "body worldbody frame replicate d
 
 // Remedies that several rows share.
 constexpr std::string_view kTransmission =
-    "Only joints and fixed tendons can be driven here; replace the transmission, or leave the actuator out.";
+    "Drives act on joints and fixed tendons here, and at once. Leave the attribute out, or replace the transmission.";
 constexpr std::string_view kActivation =
     "Drives here have no state of their own: use motor, position, velocity or general with dyntype=\"none\".";
 constexpr std::string_view kSoft = "Bodies are rigid here: leave it out, or make it of rigid bodies.";

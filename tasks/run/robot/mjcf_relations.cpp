@@ -37,6 +37,17 @@ const RobotJoint& axisNamed(const Reading& reading, const Values& values, std::s
   return joint;
 }
 
+// A joint that stands there twice counts with the sum.
+void addToTendon(const std::string& joint, double coefficient, RobotTendon& tendon) {
+  for (auto& [name, sum] : tendon.joints) {
+    if (name == joint) {
+      sum += coefficient;
+      return;
+    }
+  }
+  tendon.joints.emplace_back(joint, coefficient);
+}
+
 void readTendon(Reading& reading, const XmlElement& element) {
   const Values values(reading.document, element, "default_tendon", 0);
   RobotTendon tendon;
@@ -44,7 +55,7 @@ void readTendon(Reading& reading, const XmlElement& element) {
   tendon.name = values.text("name", fmt::format("tendon{}", reading.robot.tendons.size()));
   for (const XmlElement& child : element.children) {
     const Values part(child);
-    tendon.joints.emplace_back(axisNamed(reading, part, "joint").name, part.number("coef", 0));
+    addToTendon(axisNamed(reading, part, "joint").name, part.number("coef", 0), tendon);
   }
   if (tendon.joints.empty()) element.reject("runs over no joint.");
   tendon.limits = values.limits("range", "limited", reading.compiler().autolimits);
@@ -64,6 +75,8 @@ void readCoupling(Reading& reading, const XmlElement& element) {
   coupling.place = element.place();
   coupling.follower = axisNamed(reading, values, "joint1").name;
   if (values.has("joint2")) coupling.leader = axisNamed(reading, values, "joint2").name;
+  if (coupling.leader == coupling.follower)
+    values.reject("joint2", "is the joint itself. Name the one that it follows.");
   const std::vector<double> given = values.numbers("polycoef", 1, 5);
   coupling.polynomial = {0, 1, 0, 0, 0};
   for (std::size_t i = 0; i < given.size(); ++i) coupling.polynomial[i] = given[i];

@@ -216,8 +216,14 @@ class TreeReader {
   std::map<std::string, const Joint*, std::less<>> carried_by_;  // by child link
 };
 
+// "${height}", "$(find package)".
+bool holdsXacro(const XmlAttribute& attribute) {
+  return attribute.value.find("${") != std::string::npos || attribute.value.find("$(") != std::string::npos;
+}
+
 void refuseXacro(const XmlElement& element, const std::string& path) {
-  if (element.tag.rfind("xacro:", 0) == 0 || std::filesystem::path(path).extension() == ".xacro")
+  if (element.tag.rfind("xacro:", 0) == 0 || std::filesystem::path(path).extension() == ".xacro" ||
+      std::any_of(element.attributes.begin(), element.attributes.end(), holdsXacro))
     element.reject(fmt::format("is written for xacro. Expand the file first: xacro {} > robot.urdf",
                                printable(std::filesystem::path(path).filename().string())));
   for (const XmlElement& child : element.children) refuseXacro(child, path);

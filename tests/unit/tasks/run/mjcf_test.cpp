@@ -174,6 +174,19 @@ TEST_F(MjcfReader, APositionsDefaultChangesGeneral) {
   EXPECT_EQ(r.drives.at(3).bias, Vec3(0, -9, -2));
 }
 
+TEST_F(MjcfReader, AJointThatATendonNamesTwiceCountsWithTheSum) {
+  const Robot r = robot(body("<joint name=\"j\"/>") +
+                        "<tendon><fixed name=\"t\"><joint joint=\"j\" coef=\"1\"/><joint joint=\"j\" coef=\".5\"/>"
+                        "</fixed></tendon>");
+  ASSERT_EQ(r.tendons.at(0).joints.size(), 1u);
+  EXPECT_EQ(r.tendons[0].joints[0].second, 1.5);
+}
+
+TEST_F(MjcfReader, AnArmatureIsEnoughForAJointToMove) {
+  const Robot r = robot("<worldbody><body><joint armature=\".1\"/><site/></body></worldbody>");
+  EXPECT_EQ(r.bodies.size(), 1u);
+}
+
 TEST_F(MjcfReader, ARangeIsInheritedFromTheJoint) {
   const Robot r = robot("<compiler angle=\"radian\"/>" + body("<joint name=\"j\" range=\"-1 3\"/>") +
                         "<actuator><position joint=\"j\" inheritrange=\".5\"/></actuator>");
@@ -231,6 +244,14 @@ TEST_F(MjcfReader, ComplaintsNameLineAndRemedy) {
       {body("<joint axis=\"0 0 0\"/>"), "has no length"},
       {body("<joint axis=\"0 nan 1\"/>"), "which isn't a finite number"},
       {body("<joint axis=\"0 1\"/>"), "has 2 numbers where 3 are wanted."},
+      {body("<freejoint/><joint/>"), "a free joint is the only joint of a body of the world."},
+      {"<worldbody><body name=\"b\"><joint name=\"j\"/><body><joint/><site/></body></body></worldbody>",
+       "moves no mass"},
+      {body("<joint/><geom type=\"plane\" size=\"1 1 1\"/>"), "Planes stand still: make it a box."},
+      {body("<joint/><geom type=\"mesh\" mesh=\"m\"/>"), "is the name of no mesh of <asset>. None is known here."},
+      {body("<joint name=\"j\"/>") + "<equality><joint joint1=\"j\" joint2=\"j\"/></equality>", "is the joint itself."},
+      {body("<joint name=\"j\"/>") + "<actuator><position joint=\"j\" timeconst=\".1\"/></actuator>",
+       "has the attribute \"timeconst\", which isn't taken. Drives act on joints and fixed tendons here, and at once."},
       {body("<joint springdamper=\"1 1\"/>"),
        "has the attribute \"springdamper\", which isn't taken. Give stiffness and damping."},
       {body("<joint name=\"j\"/><joint name=\"j\"/>"), "is the second joint called \"j\"."},

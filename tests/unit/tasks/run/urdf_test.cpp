@@ -248,7 +248,8 @@ TEST_F(UrdfReader, ComplaintsNameLineAndRemedy) {
       {pair("<axis xyz=\"0 0 0\"/>"), "has no length"},
       {pair("<axis xyz=\"0 1\"/>"), "has 2 numbers where 3 are wanted."},
       {pair("<origin rpy=\"0 nan 0\"/>"), "which isn't a finite number"},
-      {pair("<origin rpy=\"0 ${pi} 0\"/>"), "which isn't a finite number"},
+      {pair("<origin rpy=\"0 pi 0\"/>"), "which isn't a finite number"},
+      {pair("<origin rpy=\"0 ${pi} 0\"/>"), "<origin> is written for xacro."},
       {pair("<origin rpy=\"0 0\"/>"), "rpy=\"0 0\" has 2 numbers where 3 are wanted."},
       {pair("<origin rpy=\"0 0 1\" quat_xyzw=\"0 0 0 1\"/>"), "second way to say the turn"},
       {pair("<origin/><origin/>"), "is the second one of this <joint>."},
@@ -269,6 +270,9 @@ TEST_F(UrdfReader, ComplaintsNameLineAndRemedy) {
       {link("a") + link("b") + link("c") + joint("i", "prismatic", "a", "b", limit) + joint("j", "floating", "b", "c"),
        "\"j\" is floating on link \"b\", which moves."},
       {"<xacro:include filename=\"a.xacro\"/>", "<xacro:include> is written for xacro. Expand the file first: xacro"},
+      {"<link name=\"${name}\"/>", "<link> is written for xacro."},
+      {"<link name=\"a\"><visual><origin xyz=\"0 0 $(arg height)\"/></visual></link>",
+       "<origin> is written for xacro."},
       {"<loop_joint/>", "<loop_joint> isn't taken."},
   };
   for (const auto& [inside, wanted] : cases) {
