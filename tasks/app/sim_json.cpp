@@ -78,6 +78,16 @@ void writeStatuses(const SimResult& result, JsonWriter& json) {
   json.endObject();
 }
 
+void writeOverlaps(const Simulation& simulation, const SimResult& result, JsonWriter& json) {
+  const auto nameOf = [&](int body) { return simulation.scene().bodies[static_cast<std::size_t>(body)].name; };
+  json.key("overlaps").beginArray();
+  for (const StartOverlap& overlap : result.overlaps) {
+    json.beginObject().key("bodies").beginArray().value(nameOf(overlap.a)).value(nameOf(overlap.b)).endArray();
+    json.key("depth").value(overlap.depth).endObject();
+  }
+  json.endArray();
+}
+
 }  // namespace
 
 std::string simJson(const Simulation& simulation, const SimOptions& options, const SimResult& result) {
@@ -95,6 +105,7 @@ std::string simJson(const Simulation& simulation, const SimOptions& options, con
       .value(result.interrupted);
   if (options.timing) writeTimes(result, json);
   writeStatuses(result, json);
+  writeOverlaps(simulation, result, json);
   json.key("state_hash").value(hashText(simulation.state().world));
   writeBodies(simulation, json);
   writeFingers(simulation, json);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "pincer/contact/io/counted.h"
 #include "pincer/contact/io/printable.h"
 #include "pincer/tasks/app/grasp_text.h"
@@ -53,6 +55,18 @@ void appendRecorded(const Simulation& simulation, std::string& out) {
     out += fmt::format("  {:<24} {:.10g} {}\n", q.name, q.measure(simulation.moment()), q.kind->unit);
 }
 
+constexpr std::size_t kMostOverlaps = 5;  // that are told one by one
+
+void appendOverlaps(const Scene& scene, const std::vector<StartOverlap>& overlaps, std::string& out) {
+  const auto nameOf = [&](int body) { return printable(scene.bodies[static_cast<std::size_t>(body)].name); };
+  for (std::size_t i = 0; i < std::min(overlaps.size(), kMostOverlaps); ++i)
+    out += fmt::format("\n{} {} and {} overlap by {:.3g} mm at the start. Draw them apart.\n", bad("Note:"),
+                       nameOf(overlaps[i].a), nameOf(overlaps[i].b), 1e3 * overlaps[i].depth);
+  if (overlaps.size() > kMostOverlaps)
+    out += fmt::format("      And {} (all of them: --json).\n",
+                       counted(static_cast<std::int64_t>(overlaps.size() - kMostOverlaps), "more pair"));
+}
+
 void appendStatuses(const SimResult& result, std::string& out) {
   for (std::size_t i = 0; i < kStatusKinds.size(); ++i) {
     if (result.statuses.of(i) > 0)
@@ -80,6 +94,7 @@ std::string simText(const Simulation& simulation, const SimOptions& options, con
   if (options.grasp) out += graspText(simulation);
   appendRecorded(simulation, out);
   out += expectationsText(result.log);
+  appendOverlaps(scene, result.overlaps, out);
   appendStatuses(result, out);
   out += fmt::format("\n{} of {:g} ms, each: median {:.2f} us, p99.9 {:.2f} us, longest {:.1f} us\n",
                      counted(simulation.ticks(), "tick"), 1e3 * scene.options.h, 1e6 * result.times.quantile(0.5),

@@ -72,7 +72,8 @@ void applyOptions(const SimOptions& options, Scene& scene) {
 SimResult runScene(Simulation& simulation, const SimOptions& options, const std::atomic<bool>& interrupted,
                    const std::function<void(std::int64_t)>& progress) {
   const Scene& scene = simulation.scene();
-  SimResult result{ExpectationLog(scene.expectations), TickTimes(scene.ticks()), {}, scene.ticks(), false, false};
+  SimResult result{ExpectationLog(scene.expectations), TickTimes(scene.ticks()), {}, scene.ticks(), false, {}, false};
+  result.overlaps = overlapsAtStart(simulation.model().world, simulation.state().world);
   CsvRecorder csv(options.csv, scene.record);
   const auto observe = [&] {
     result.log.observe(simulation.ticks(), simulation.time(), simulation.moment());

@@ -4,7 +4,9 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "pincer/tasks/run/scene/start_overlaps.h"
 #include "pincer/tasks/run/scene/step_status_text.h"
 #include "pincer/tasks/run/scene/tick_times.h"
 #include "pincer/tasks/run/simulation.h"
@@ -26,7 +28,8 @@ struct SimResult {
   StatusCounts statuses;
   std::int64_t ticks_wanted = 0;
   bool interrupted = false;
-  bool broke = false;  // a state that isn't finite ended the run
+  std::vector<StartOverlap> overlaps;  // of the start
+  bool broke = false;                  // a state that isn't finite ended the run
 };
 
 // Changes `scene` as the options say. Throws InputError when they don't fit it.
