@@ -3,7 +3,7 @@
 
 The Allegro of grasps.py closes on an object, the plate goes away, and then each joint's target is its own plus a normal deviate of SD [rad], drawn anew every so often.
 Forces are in balance where those of the contacts on the object are m (dv/dt - g). Printed: how far from that they are in the worst tick, ticks without an answer, how
-far the object goes, and its creep from 5 to 10 s afterwards. A tick that an impact cuts shows the forces of its last part, and isn't judged. Fails where another one that
+far the object goes, its creep from 5 to 10 s afterwards, and if all sleeps then. A tick that an impact cuts shows the forces of its last part, and isn't judged. Fails where another one that
 was answered is off by more than 1e-9 N.
 """
 import argparse
@@ -60,10 +60,12 @@ def shaken(name, arguments):
     inputs.drive_target[:] = closed
     pincer.step(model, state, round(5 / tick), inputs)
     settled = state.body("thing").position[:3].copy()
-    pincer.step(model, state, round(5 / tick), inputs)
+    report = pincer.step(model, state, round(5 / tick), inputs)
+    speed = max(float(numpy.abs(state.body(body).velocity).max()) for body in model.bodies)
     creep = float(numpy.linalg.norm(state.body("thing").position[:3] - settled))
     print(f"allegro, a {name}, targets shaken by {arguments.shake} rad every {arguments.every} s for {arguments.seconds} s: forces off by {worst:.1e} N at most, "
-          f"{flagged} of {ticks} ticks flagged, {cut} cut, went {far * 1e3:.2f} mm, then creeps by {creep * 1e6:.1e} um in 5 s", flush=True)
+          f"{flagged} of {ticks} ticks flagged, {cut} cut, went {far * 1e3:.2f} mm, then creeps by {creep * 1e6:.1e} um in 5 s, "
+          f"{'asleep' if report.asleep else f'not asleep: something moves by {speed:.1e}'}", flush=True)
     return worst <= 1e-9
 
 
