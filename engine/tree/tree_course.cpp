@@ -99,12 +99,23 @@ void respond(const TreeModel& tree, const BaseCourse& base, const TreePush& push
   addWanted(tree, course.factor, course.loop_rows, change);
 }
 
+// Half of what the contacts' expected impulses change, to course.u.
+void addExpected(const TreeModel& tree, const TreePush& push, TreeCourse& course) {
+  if (push.expected.empty()) return;
+  std::fill(course.slope.begin(), course.slope.end(), 0.0);
+  for (std::size_t l = 0; l < push.expected.size(); ++l)
+    addWrench(tree, course.mid, static_cast<int>(l), push.expected[l].f_W, push.expected[l].tau_W, course.slope);
+  solve(tree, course.factor, course.slope);
+  addTimes(0.5, course.slope, course.u);
+}
+
 void goByTheMiddle(const TreeModel& tree, const BaseCourse& base, const TreePush& push, std::span<const double> u,
                    double h, TreeCourse& course) {
   std::copy(u.begin(), u.end(), course.u.begin());
   respond(tree, base, push, u, h, course, course.slope);
-  if (!push.pressed) {
+  if (!push.pressed || !push.expected.empty()) {
     addTimes(0.5, course.slope, course.u);
+    addExpected(tree, push, course);
     respond(tree, base, push, u, h, course, course.slope);
   }
   moveLinks(tree, base.mid, course.q, u, course.mid);

@@ -4,8 +4,10 @@
 //   M^ Du = h (tau - C(q_m, u + h a/2)) + p + J^T r,        M^ h a = h (tau - C(q_m, u)) + p
 //
 // q_m is without forces, so that what rests is found where it is. m^ and p of springs, dampers and drives: drive_law.h;
-// tau of what is constant. Loops are closed in all of these (loop_closure.h). Of a tree that contacts press C is that
-// of u: a is far from how it moves, and a grasp at rest would feel forces of a motion that isn't there.
+// tau of what is constant. Loops are closed in all of these (loop_closure.h). Of a tree that contacts press a has
+// M^^-1 J^T r/h in it, by the impulses r of the last tick: else a link that slides along something would lose or gain
+// energy at first order in h. Where these aren't known C is that of u: a without them is far from how the tree moves,
+// and a grasp at rest would feel forces of a motion that isn't there.
 //
 // A tree that nothing else pushes goes by Runge and Kutta's method of 4th order where all of those are soft (balls
 // by exponentials: H. Munthe-Kaas, Appl. Numer. Math. 29 (1999) 115-127); on a base at rest in up to four steps, if a
@@ -40,6 +42,8 @@ struct TreePush {
   bool may_be_fine = true;              // the free course by Runge and Kutta, if all is soft
   bool pressed = false;                 // contacts hold back what drives would do in the tick
   std::span<const char> locked{};       // true for columns that stop and stay; empty if none do
+  // Impulses of contacts on each link [N s, N m s], as the last tick lets expect; none: unknown.
+  std::span<const LinkForce> expected{};
 };
 
 // The base at the start, the middle and the end of the tick.

@@ -59,6 +59,15 @@ bool rollsOn(double u_n, double turn) {
   return std::abs(turn) > kClosingSpeed && std::abs(u_n - 2 * turn) < kAlike * std::abs(turn);
 }
 
+// True if a link keeps nothing of the speed that it landed with: what its normal velocity has beyond the turn doesn't
+// close. One that slides is pushed out, and would land in tick after tick, all its way by the rates at their ends.
+bool hasStopped(const WorldModel& model, const Contact& c, double u_n, double turn) {
+  const auto is_link = [&](const Side& side) {
+    return side.kind == SideKind::kBody && model.bodies[side.index].tree >= 0;
+  };
+  return (is_link(c.a) || is_link(c.b)) && u_n - 2 * turn > -kClosingSpeed;
+}
+
 double largestCorrection(const WorldModel& model, const Contact& c) {
   return isPushedOut(model, c) ? kDeepSpeed : kLargestCorrection;
 }
@@ -70,7 +79,7 @@ double normalBias(const WorldModel& model, const Rates& rates, const WorldScratc
   if (memory && memory->active) {
     const double turn = turnOfNormal(rates, c, *memory);
     // A contact that landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
-    if (!memory->closing || rollsOn(u_n, turn))
+    if (!memory->closing || rollsOn(u_n, turn) || hasStopped(model, c, u_n, turn))
       return std::max(rates.normal * (c.phi - c.offset_C[kNormalRow]), -largestCorrection(model, c)) + turn;
   }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;

@@ -164,25 +164,51 @@ bool comesToRest(const WorldModel& model, const WorldScratch& scratch, const Tre
   return true;
 }
 
-// Which trees contacts, stops or brakes pushed on in the last part of a tick.
+// Adds the impulse that a contact of the last part of a tick gave a link of it, for a part `share` times as long.
+void expectContact(const ContactMemory& c, const BodyModel& link, double sign, const Vec3& arm_W, double share,
+                   WorldScratch& scratch) {
+  if (link.tree < 0) return;
+  TreeScratch& s = scratch.trees[link.tree];
+  s.was_pressed = true;
+  // A landing gave more than the contact will, and moments of torsion and rolling would need its radii.
+  if (c.closing || !c.r.tail<kMaxContactRows - kTorsionRow>().isZero(0)) s.is_expected = false;
+  const Vec3 f_W = sign * share * (c.r[0] * c.t1_W + c.r[1] * c.n_W.cross(c.t1_W) + c.r[2] * c.n_W);
+  LinkForce& sum = s.expected[link.link];
+  sum.f_W += f_W;
+  sum.tau_W += arm_W.cross(f_W);
+}
+
+// Which trees contacts, stops or brakes pushed on in the last part of a tick, and by how much if it was contacts alone.
 void notePressed(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
-  for (TreeScratch& s : scratch.trees) s.was_pressed = false;
-  const auto note = [&](int tree) {
-    if (tree >= 0) scratch.trees[tree].was_pressed = true;
-  };
-  for (int k = 0; k < state.contact_count; ++k) {
-    if (!state.contacts[k].active) continue;
-    const ContactOwners owners = ownersOf(model.shape_bits, state.contacts[k].id);
-    if (owners.a >= 0) note(model.bodies[owners.a].tree);
-    if (owners.b >= 0) note(model.bodies[owners.b].tree);
-    if (owners.row >= 0) note(scratch.joint_rows[owners.row].tree);
+  for (TreeScratch& s : scratch.trees) {
+    s.was_pressed = false;
+    s.is_expected = state.h_last > 0;
+    std::fill(s.expected.begin(), s.expected.end(), LinkForce{});
   }
+  const double share = state.h_last > 0 ? scratch.h / state.h_last : 0;
+  for (int k = 0; k < state.contact_count; ++k) {
+    const ContactMemory& c = state.contacts[k];
+    if (!c.active) continue;
+    const ContactOwners owners = ownersOf(model.shape_bits, c.id);
+    if (owners.row >= 0 && scratch.joint_rows[owners.row].tree >= 0) {
+      TreeScratch& s = scratch.trees[scratch.joint_rows[owners.row].tree];
+      s.was_pressed = true;
+      s.is_expected = false;
+    }
+    if (owners.a >= 0) expectContact(c, model.bodies[owners.a], 1, c.arm_a_W, share, scratch);
+    if (owners.b >= 0) expectContact(c, model.bodies[owners.b], -1, c.arm_b_W, share, scratch);
+  }
+  for (TreeScratch& s : scratch.trees) s.is_expected = s.is_expected && s.was_pressed;
 }
 
 }  // namespace
 
 TreeScratch::TreeScratch(const TreeModel& tree)
-    : drives(tree.drives.size()), forces(tree.links.size()), constant(tree.coordinates.size()), course(tree) {
+    : drives(tree.drives.size()),
+      forces(tree.links.size()),
+      constant(tree.coordinates.size()),
+      course(tree),
+      expected(tree.links.size()) {
   for (std::vector<double>* columns : {&impulse, &gained, &row, &held, &old_free, &old_way})
     columns->resize(static_cast<std::size_t>(tree.columnCount()));
   for (std::vector<char>* columns : {&locked, &pressed}) columns->resize(static_cast<std::size_t>(tree.columnCount()));
@@ -196,7 +222,8 @@ TreePush pushOn(const WorldScratch& scratch, const TreeModel& tree, const TreeSc
           .constant = s.constant,
           .may_be_fine = movesAlone(tree),
           .pressed = s.was_pressed,
-          .locked = s.has_locked ? std::span<const char>(s.locked) : std::span<const char>{}};
+          .locked = s.has_locked ? std::span<const char>(s.locked) : std::span<const char>{},
+          .expected = s.is_expected ? std::span<const LinkForce>(s.expected) : std::span<const LinkForce>{}};
 }
 
 void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {

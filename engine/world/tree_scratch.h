@@ -27,7 +27,10 @@ struct TreeScratch {
   std::vector<double> held;
   bool is_near = false;      // some contact of a link or a stop was looked at, whether it pushes or not
   bool was_pressed = false;  // something pushed on a link or a joint in the last part of a tick
-  bool rests = false;        // nothing of it changed in this part of the tick
+  // By links, of a tree that was pressed: what contacts may be expected to give in this part; if that is known.
+  std::vector<LinkForce> expected;
+  bool is_expected = false;
+  bool rests = false;  // nothing of it changed in this part of the tick
   // Between uses.
   std::vector<double> row, q, old_free, old_way;
 };
