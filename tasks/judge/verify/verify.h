@@ -19,6 +19,7 @@ std::vector<Measurement> verifyFreeBodies();
 std::vector<Measurement> verifyCompounds();
 std::vector<Measurement> verifyTrees();
 std::vector<Measurement> verifyLoops();
+std::vector<Measurement> verifyClearance();
 std::vector<Measurement> verifyJointLimits();
 std::vector<Measurement> verifyGrippers();
 std::vector<Measurement> verifyRobots();
