@@ -133,8 +133,7 @@ class IslandSolve {
   // Walls that close on what is between them keep it in the middle by their pushes.
   void solveWithoutPushes() {
     const SolveResult pushed = island_.result;
-    std::copy(island_.r, island_.r + island_.rows, memory_.kept_r.begin());
-    std::copy(island_.u, island_.u + island_.rows, memory_.kept_u.begin());
+    keepAnswer();
     dropPushes();
     std::fill(island_.r, island_.r + island_.rows, 0.0);
     solveAgain(options_);
@@ -142,11 +141,18 @@ class IslandSolve {
     const bool is_better = island_.result.converged || island_.result.error < pushed.error;
     if (is_better && (!pushed.yields || holdsWithoutPushes())) return keepOverlaps();
     pushAgain();
-    std::copy(memory_.kept_r.begin(), memory_.kept_r.begin() + island_.rows, island_.r);
-    std::copy(memory_.kept_u.begin(), memory_.kept_u.begin() + island_.rows, island_.u);
+    takeKeptAnswer();
     const int iterations = island_.result.iterations;
     island_.result = pushed;
     island_.result.iterations = iterations;
+  }
+  void keepAnswer() {
+    std::copy(island_.r, island_.r + island_.rows, memory_.kept_r.begin());
+    std::copy(island_.u, island_.u + island_.rows, memory_.kept_u.begin());
+  }
+  void takeKeptAnswer() {
+    std::copy(memory_.kept_r.begin(), memory_.kept_r.begin() + island_.rows, island_.r);
+    std::copy(memory_.kept_u.begin(), memory_.kept_u.begin() + island_.rows, island_.u);
   }
   // All that overlaps does so by little, and presses.
   bool holdsWithoutPushes() const {
@@ -167,11 +173,18 @@ class IslandSolve {
            scratch_.h > 0 && island_.holds_trees &&
            found.residual > exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_));
   }
+  // The search may end as if contacts were soft (squeeze.h), far from the law: then the first answer stays.
   void polish() {
-    const SolveMethod method = island_.result.method;
+    const SolveResult first = island_.result;
+    keepAnswer();
     searchOn();
+    const SolveResult searched = island_.result;
+    const bool is_better = searched.residual < first.residual;
+    if (!is_better) takeKeptAnswer();
+    island_.result = is_better ? searched : first;
+    island_.result.iterations = searched.iterations;
     island_.result.converged = true;
-    island_.result.method = method;
+    island_.result.method = first.method;
   }
   void searchOn() {
     const SolveResult first = island_.result;
