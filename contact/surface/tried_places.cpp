@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "pincer/contact/surface/flat_minimum.h"
 #include "pincer/contact/surface/lookout.h"
 #include "pincer/contact/surface/shell_face.h"
 
@@ -88,7 +89,10 @@ void Lookout::examine(const Turns& turns, NearPart& near) {
   const double way = std::max(0.0, part.approach(ball_.C, ball_.reach) - kRoundOff * surface_.net.length());
   near.due = gone_ + way;
   if (way > 0 || !part.mayHold(ball_.C, reach, Facing::front) || isKnown(triangle, part)) return;
-  if (const auto foot = search_.minimumOn(surface_.net, near.place, ball_.C, reach)) tryPlace(*foot);
+  const FlatPoint flat = closestOnFacet(surface_.net, triangle, ball_.C);
+  const double distance = std::sqrt(flat.distance2) - part.bulge;  // of large patches more than their balls tell
+  near.due += std::max(0.0, distance - ball_.reach - kRoundOff * surface_.net.length());
+  if (distance < reach && isFlatMinimum(surface_.net, triangle, flat, ball_.C)) tryPlace({triangle, flat.b});
 }
 
 // True if a followed contact stands for this patch: beside it, with a normal that the patch's could be. (Not any of its

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <set>
 #include <vector>
 
@@ -243,6 +244,100 @@ TEST(Resting, TheDeepestOfManyCornersIsAlwaysKept) {
     double nearest = 1;
     for (const std::uint32_t k : four) nearest = std::min(nearest, (X_WA * ring.points[k]).z());
     ASSERT_LE(nearest, (X_WA * ring.points[deepest]).z() + 1e-6);  // or one that counts as equally deep
+  }
+}
+
+// The rule by which points are chosen as it is written: every point within the margin is scored in every round.
+
+// A polygon's corners, and how far a point is outside it along the normal `n`.
+struct Polygon {
+  Vec3 n;
+  std::vector<Vec3> corners;
+
+  double outside(const Vec3& p) const {
+    if (corners.size() == 1) return n.cross(p - corners[0]).norm();
+    double distance = -std::numeric_limits<double>::infinity();
+    for (const Vec3& a : corners) {
+      for (const Vec3& b : corners) {
+        const Vec3 right = directionOf<Vec3>((b - a).cross(n), Vec3::Zero()).n;
+        const double offset = right.dot(a);
+        const bool is_outermost = std::none_of(corners.begin(), corners.end(),
+                                               [&](const Vec3& c) { return right.dot(c) - offset > kSameGap; });
+        if (&a != &b && is_outermost) distance = std::max(distance, right.dot(p) - offset);
+      }
+    }
+    return distance;
+  }
+};
+
+// The point that the rule takes next, of those within the margin; -1 for none.
+template <class Support>
+int nextByRule(const std::vector<Vec3>& points, const Support& support, const Polygon& polygon, double deepest) {
+  int next = -1;
+  double best = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double gap = support.gap(points[i]), d = gap < kMargin ? polygon.outside(points[i]) : 0;
+    const double score = d > 0 ? d * d / (kSameGap + gap - deepest) : 0;
+    const bool is_taken = std::find(polygon.corners.begin(), polygon.corners.end(), points[i]) != polygon.corners.end();
+    if (is_taken || !(score > kBetter * best)) continue;
+    best = score;
+    next = static_cast<int>(i);
+  }
+  return next;
+}
+
+template <class Support>
+std::vector<int> chosenByRule(const std::vector<Vec3>& points, const Support& support) {
+  double deepest = std::numeric_limits<double>::infinity();
+  for (const Vec3& p : points) deepest = std::min(deepest, support.gap(p));
+  std::vector<int> chosen;
+  Polygon polygon;
+  const auto first =
+      std::find_if(points.begin(), points.end(), [&](const Vec3& p) { return support.gap(p) <= deepest + kSameGap; });
+  polygon.n = support.normal(*first);
+  for (int next = static_cast<int>(first - points.begin()); next >= 0 && chosen.size() < kMaxChosen;) {
+    chosen.push_back(next);
+    polygon.corners.push_back(points[static_cast<std::size_t>(next)]);
+    next = nextByRule(points, support, polygon, deepest);
+  }
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+// Corners of rings below each other, and random ones: some in pairs that are hardly apart, all near the ground.
+std::vector<Vec3> cloud(int count, std::mt19937& random) {
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  std::vector<Vec3> points;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 0.1 * i, radius = 0.02 + 1e-4 * (i % 5);
+    Vec3 p(radius * std::cos(angle), radius * std::sin(angle), 2e-4 * (i % 5));
+    if (i % 3 == 1) p = Vec3(0.02 * anywhere(random), 0.02 * anywhere(random), 5e-4 * (1 + anywhere(random)));
+    if (i % 3 == 2) p = points.back() + 1e-6 * Vec3(anywhere(random), anywhere(random), anywhere(random));
+    points.push_back(p);
+  }
+  return points;
+}
+
+template <class Support>
+void expectTheRule(const std::vector<Vec3>& points, const Support& support) {
+  const PointChoice choice({points, {}, 0}, support, kMargin);
+  std::vector<int> chosen;
+  for (int k = 0; k < choice.count(); ++k) chosen.push_back(choice[k].index);
+  EXPECT_EQ(chosen, chosenByRule(points, support)) << points.size() << " points";
+}
+
+// Of few points, of as many as are listed, and of more.
+TEST(Resting, PointsAreThoseOfTheRuleHoweverManyAreNear) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> tilt(-1e-2, 1e-2);
+  for (const int count : {5, 12, 100, 900, 1024, 1025, 3000}) {
+    for (int k = 0; k < 20; ++k) {
+      const std::vector<Vec3> points = cloud(count, random);
+      const double t = k % 2 == 0 ? 0 : 1;
+      const SolidFrame A({Quat(1, t * tilt(random), t * tilt(random), 0).normalized(), {0, 0, 1e-5}});
+      expectTheRule(points, PlaneSupport(HalfSpace{}, Pose{}, A));
+      expectTheRule(points, BowlSupport(Dish{0.15}, Pose{}, A));
+    }
   }
 }
 
