@@ -169,7 +169,7 @@ FamilyWorld randomPegWorld(std::uint64_t seed) {
   peg.boxes = 6 + static_cast<int>(uniform(0, 7));
   peg.radius = uniform(0.006, 0.015);
   peg.half_length = peg.radius * uniform(1.5, 4);
-  peg.play = 3e-5 * std::pow(20, uniform(0, 1));
+  peg.play = 3e-5 * math::pow(20, uniform(0, 1));
   peg.mu = uniform(0.1, 0.8);
   peg.tilt = uniform(0, 0.03);
   peg.heading = uniform(0, 2 * M_PI);
