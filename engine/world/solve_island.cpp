@@ -92,10 +92,9 @@ class IslandSolve {
     if (island_.contacts > kFewContacts) return solve(giving());
     solve(quick());
     if (island_.result.converged) return;
-    const bool is_small = island_.contacts < kManyContacts;
     fit(PushingBy::kImpulses);
-    solveAgain(is_small ? options_ : giving());
-    if (is_small && !island_.result.converged) solveAgain(giving());
+    solveAgain(giving());
+    if (island_.contacts < kManyContacts && !island_.result.converged) solveAgain(options_);
     if (pushesInVain()) solveWithoutPushes();
   }
 
