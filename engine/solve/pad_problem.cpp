@@ -20,6 +20,7 @@ constexpr int kLanes = kMostContacts + kGroups + 1;  // a group begins at an eve
 constexpr int kRows = kTorsionRow, kPointFreedoms = 3;
 
 using Lanes = double[kLanes];
+constexpr Lanes kNone[kRows] = {};
 
 template <int n, class Act>
 [[gnu::always_inline]] inline void times(const Act& act) {
@@ -38,41 +39,44 @@ using Blocks = Lanes[kRows][freedoms];
 // sums[k] = sum over lanes [from, to) and rows of  x[row][k] y[row]
 template <int freedoms>
 inline void addProducts(const Blocks<freedoms>& x, const Lanes (&y)[kRows], int from, int to, double* sums) {
-  DoublePair sum[freedoms] = {};
-  for (int l = 0; l < kRows; ++l) {
+  DoublePair sum[freedoms];
+  times<freedoms>([&](auto k) { sum[k] = DoublePair{0, 0}; });
+  times<kRows>([&](auto l) {
     for (int i = from; i < to; i += 2) {
       const DoublePair y_i = pairAt(y[l] + i);
       times<freedoms>([&](auto k) { sum[k] += pairAt(x[l][k] + i) * y_i; });
     }
-  }
-  for (int k = 0; k < freedoms; ++k) sums[k] = sumOf(sum[k]);
+  });
+  times<freedoms>([&](auto k) { sums[k] = sumOf(sum[k]); });
 }
 
-// out[row] += sum over k of  x[row][k] y[k]
+// out[row] = in[row] + sum over k of  x[row][k] y[k]
 template <int freedoms>
-inline void addImages(const Blocks<freedoms>& x, const double* y, int from, int to, Lanes (&out)[kRows]) {
+inline void addImages(const Blocks<freedoms>& x, const double* y, int from, int to, const Lanes (&in)[kRows],
+                      Lanes (&out)[kRows]) {
   DoublePair Y[freedoms];
-  for (int k = 0; k < freedoms; ++k) Y[k] = DoublePair{y[k], y[k]};
-  for (int l = 0; l < kRows; ++l) {
+  times<freedoms>([&](auto k) { Y[k] = DoublePair{y[k], y[k]}; });
+  times<kRows>([&](auto l) {
     for (int i = from; i < to; i += 2) {
-      DoublePair sum = pairAt(out[l] + i);
+      DoublePair sum = pairAt(in[l] + i);
       times<freedoms>([&](auto k) { sum += pairAt(x[l][k] + i) * Y[k]; });
       pairAt(out[l] + i) = sum;
     }
-  }
+  });
 }
 
 // out[k] = sum over lanes and rows of  x[row][k] y[row][column], k from `first` on
 template <int freedoms, int first, int columns>
 inline void addColumn(const Blocks<freedoms>& x, const Blocks<columns>& y, int column, int from, int to, double* out) {
-  DoublePair sum[freedoms - first] = {};
-  for (int l = 0; l < kRows; ++l) {
+  DoublePair sum[freedoms - first];
+  times<freedoms - first>([&](auto k) { sum[k] = DoublePair{0, 0}; });
+  times<kRows>([&](auto l) {
     for (int i = from; i < to; i += 2) {
       const DoublePair y_i = pairAt(y[l][column] + i);
       times<freedoms - first>([&](auto k) { sum[k] += pairAt(x[l][first + k] + i) * y_i; });
     }
-  }
-  for (int k = first; k < freedoms; ++k) out[k] = sumOf(sum[k - first]);
+  });
+  times<freedoms - first>([&](auto k) { out[first + k] = sumOf(sum[k]); });
 }
 
 class PadProblem {
@@ -131,7 +135,8 @@ class PadProblem {
 
   // A step from r and u. False if there is none.
   bool step() {
-    Lanes change[kRows] = {};
+    Lanes change[kRows];
+    for (int k = 0; k < kRows; ++k) std::fill(change[k], change[k] + lanes(), 0.0);
     forEachContact([&](int i) {
       for (int k = 0; k < kRows; ++k) change[k][i] = holds_[i] ? -u_[k][i] : 0;
     });
@@ -139,8 +144,7 @@ class PadProblem {
     if (!factorise()) return false;
     solve();
     solve();
-    const Lanes none[kRows] = {};
-    setVelocities(none, change);
+    setVelocities(kNone, change);
     forEachContact([&](int i) {
       for (int k = 0; k < kRows && holds_[i]; ++k) r_[k][i] += change[k][i];
     });
@@ -241,11 +245,8 @@ class PadProblem {
     for (int p = 0; p < points_; ++p) addProducts<kPointFreedoms>(point_, r, first_[p], end_[p], y_point_[p]);
   }
   void setVelocities(const Lanes (&q)[kRows], Lanes (&u)[kRows]) const {
-    for (int l = 0; l < kRows; ++l) {
-      for (int i = 0; i < lanes(); i += 2) pairAt(u[l] + i) = pairAt(q[l] + i);
-    }
-    addImages<kMoverFreedoms>(body_, y_body_, 0, lanes(), u);
-    for (int p = 0; p < points_; ++p) addImages<kPointFreedoms>(point_, y_point_[p], first_[p], end_[p], u);
+    addImages<kMoverFreedoms>(body_, y_body_, 0, lanes(), q, u);
+    for (int p = 0; p < points_; ++p) addImages<kPointFreedoms>(point_, y_point_[p], first_[p], end_[p], u, u);
   }
 
   // N of the contacts that hold: those that don't count as 0 in one of the two factors.

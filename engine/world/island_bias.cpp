@@ -64,6 +64,17 @@ class BiasFit {
         gradient_(memory.gradient.data()),
         response_(memory.way.data()) {}
 
+  // True if contacts that push ask for next to nothing, whichever of their rows take part.
+  bool isNegligible() const {
+    double largest = 0;
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const Contact& c = contact(i);
+      if (!(r_[problem_.firstRow(i) + kNormalRow] > 0)) continue;
+      for (int k = 0; k < problem_.rows(i); ++k) largest = std::max(largest, std::abs(unitOfRow(c, k) * c.bias_C[k]));
+    }
+    return kNormalRowWeight * largest <= kNegligible;
+  }
+
   // How much is asked for [m/s].
   double gather() {
     double largest = 0;
@@ -244,7 +255,7 @@ bool mayContradict(const ContactProblem& problem) {
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
                      double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
   BiasFit fit(pushing, problem, r, nullptr, order, contacts, memory);
-  if (memory.operations_left < 0) return;
+  if (memory.operations_left < 0 || fit.isNegligible()) return;
   const double asked = fit.gather();
   if (asked <= kNegligible) return;
   fit.minimise();

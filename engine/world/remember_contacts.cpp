@@ -54,10 +54,38 @@ bool isStuckAlike(int shape_bits, const ContactMemory& x, const ContactMemory& y
   return isOfSameTwo(shape_bits, x.id, y.id) && mayStick(y) && x.n_W.dot(y.n_W) > kSamePlane;
 }
 
+// True if all contacts of a face stick in one frame, and some rigid motion of its plane gives their offsets, but for D:
+// then least squares leave no more than N D^2 of all N. Seen from the first contact, without a frame for each.
+bool haveMovedRigidly(std::span<const ContactMemory> face) {
+  constexpr double kRigid = 0.25 * kAligned * kAligned;
+  const ContactMemory& first = face.front();
+  const Vec3 t2_W = first.n_W.cross(first.t1_W);
+  const auto rho = [&](const ContactMemory& m) {
+    const Vec3 way_W = m.arm_a_W - first.arm_a_W;
+    return Vec2(first.t1_W.dot(way_W), t2_W.dot(way_W));
+  };
+  double turn = 0, spread = 0;
+  for (const ContactMemory& m : face) {
+    if (!sticks(m) || m.t1_W != first.t1_W || m.n_W != first.n_W) return false;
+    const Vec2 at = rho(m);
+    turn += at.x() * (m.offset_C[1] - first.offset_C[1]) - at.y() * (m.offset_C[0] - first.offset_C[0]);
+    spread += at.squaredNorm();
+  }
+  const double theta = spread > 0 ? turn / spread : 0;
+  double left = 0, largest = 0;
+  for (const ContactMemory& m : face) {
+    const Vec2 at = rho(m), offset = m.offset_C.head<2>();
+    left = std::max(left, (offset - first.offset_C.head<2>() - theta * Vec2(-at.y(), at.x())).squaredNorm());
+    largest = std::max(largest, offset.squaredNorm());
+  }
+  return static_cast<double>(face.size()) * left <= kRigid * largest;
+}
+
 // Makes the offsets of one face's contacts those of one rigid motion in its plane, d + theta n x rho:
 // what no motion can undo would wedge the body against its own friction, and the solver against the
 // round-off of it. Least squares, all points alike.
 void alignOffsets(std::span<ContactMemory> face) {
+  if (haveMovedRigidly(face)) return;
   Vec3 centre = Vec3::Zero(), d = Vec3::Zero();
   const auto offset_W = [](const ContactMemory& m) {
     return Vec3(m.t1_W * m.offset_C[0] + m.n_W.cross(m.t1_W) * m.offset_C[1]);
