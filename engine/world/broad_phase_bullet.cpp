@@ -1,7 +1,9 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/surface/bullet_memory.h"
@@ -38,6 +40,58 @@ bool overlap(const btBroadphaseProxy& x, const btBroadphaseProxy& y) {
   return true;
 }
 
+bool meet(const btBroadphaseProxy& x, const Box& box) {
+  for (int k = 0; k < 3; ++k) {
+    if (!(x.m_aabbMin[k] <= box.high[k] && box.low[k] <= x.m_aabbMax[k])) return false;
+  }
+  return true;
+}
+
+// By how much `inner` sticks out of `outer`, negative if it doesn't [m]; not finite where one of them isn't.
+double excessOf(const Box& inner, const Box& outer) {
+  const btVector3 low = outer.low - inner.low, high = inner.high - outer.high;
+  const double check = (low.x() + low.y() + low.z()) + (high.x() + high.y() + high.z());
+  if (!std::isfinite(check)) return std::numeric_limits<double>::infinity();
+  return std::max({low.x(), low.y(), low.z(), high.x(), high.y(), high.z()});
+}
+
+Box around(const Box& box, double further) {
+  const btVector3 way(further, further, further);
+  return {box.low - way, box.high + way};
+}
+
+// Bodies found round a place, kept for as long as no box can have come in from further out: most of a look into a
+// tree of a thousand bodies is the way down.
+class NearMemory {
+ public:
+  static constexpr double kWider = 4e-3;  // than asked for [m]
+
+  void note(const Box& wide, const std::vector<int>& bodies, double way) {
+    is_known_ = bodies.size() <= bodies_.size();
+    if (!is_known_) return;
+    wide_ = wide;
+    way_ = way;
+    count_ = bodies.size();
+    std::copy(bodies.begin(), bodies.end(), bodies_.begin());
+  }
+  void forget() { is_known_ = false; }
+
+  // True if it has all bodies whose boxes meet `box`.
+  //   way  by how much the boxes' faces have come out since any time before the note, tick by tick the most [m]
+  bool holds(const Box& box, double way) const {
+    constexpr double kRoundOff = 1e-9;  // of ways and places [m]
+    return is_known_ && (way - way_) + kRoundOff <= -excessOf(box, wide_);
+  }
+  std::span<const int> bodies() const { return {bodies_.data(), count_}; }
+
+ private:
+  Box wide_;
+  double way_ = 0;
+  std::array<int, 12> bodies_;
+  std::size_t count_ = 0;
+  bool is_known_ = false;
+};
+
 // A half-space's far side is all that matters of it.
 bool isNear(const WorldModel& model, const WorldScratch& scratch, int unbounded, int body) {
   if (!model.bodies[unbounded].is_plane) return true;
@@ -53,8 +107,12 @@ struct BroadPhase::Tree {
   btDbvtBroadphase bullet;
   std::vector<btBroadphaseProxy*> proxies;  // per body, null for unbounded ones
   std::vector<int> numbers;                 // of bodies, for proxies to point to
+  std::vector<NearMemory> memories;         // of each who asks in turn after candidates(), as fingers do
+  std::size_t asked = 0;
+  double way = 0;  // see NearMemory::holds
 
-  explicit Tree(const WorldModel& model) : proxies(model.bodies.size(), nullptr), numbers(model.bodies.size()) {
+  explicit Tree(const WorldModel& model)
+      : proxies(model.bodies.size(), nullptr), numbers(model.bodies.size()), memories(model.points.size()) {
     gDbvtMargin = kTreeMargin;
     reservePairs(static_cast<int>(model.bodies.size()));
     for (std::size_t i = 0; i < model.bodies.size(); ++i) {
@@ -71,6 +129,16 @@ struct BroadPhase::Tree {
     for (btBroadphaseProxy* proxy : proxies) {
       if (proxy) bullet.destroyProxy(proxy, nullptr);
     }
+  }
+
+  // Called once all boxes are where they are now; a face of one came out by as much as `fastest` [m].
+  void noteWay(double fastest) {
+    constexpr double kLongWay = 1;  // [m], from which round-off isn't that of NearMemory
+    asked = 0;
+    way += fastest;
+    if (way <= kLongWay) return;
+    way = 0;
+    for (NearMemory& memory : memories) memory.forget();
   }
 
  private:
@@ -101,11 +169,15 @@ BroadPhase::~BroadPhase() = default;
 
 std::span<const BodyPair> BroadPhase::candidates(const WorldModel& model, const WorldScratch& scratch) {
   pairs_.clear();
+  double fastest = 0;
   for (std::size_t i = 0; i < tree_->proxies.size(); ++i) {
-    if (!tree_->proxies[i]) continue;
+    btBroadphaseProxy* const proxy = tree_->proxies[i];
+    if (!proxy) continue;
     const Box box = boxOf(model, scratch, static_cast<int>(i));
-    tree_->bullet.setAabb(tree_->proxies[i], box.low, box.high, nullptr);
+    fastest = std::max(fastest, excessOf(box, {proxy->m_aabbMin, proxy->m_aabbMax}));
+    tree_->bullet.setAabb(proxy, box.low, box.high, nullptr);
   }
+  tree_->noteWay(fastest);
   tree_->bullet.calculateOverlappingPairs(nullptr);
   const btBroadphasePairArray& found = tree_->bullet.getOverlappingPairCache()->getOverlappingPairArray();
   for (int i = 0; i < found.size(); ++i) {
@@ -143,21 +215,28 @@ struct NearBodies final : btBroadphaseAabbCallback {
 // The tree's boxes lie about the present ones and depend on the past; what is looked at beyond reach
 // changes nothing but trackers that are reset.
 std::span<const int> BroadPhase::bodiesNear(const Vec3& p_W, double reach) {
-  near_.assign(unbounded_.begin(), unbounded_.end());
-  const btVector3 centre(p_W.x(), p_W.y(), p_W.z()), half(reach, reach, reach);
-  const btVector3 low = centre - half, high = centre + half;
-  NearBodies found(near_);
-  tree_->bullet.aabbTest(low, high, found);
-  const auto is_far = [&](int body) {
-    const btBroadphaseProxy* const proxy = tree_->proxies[static_cast<std::size_t>(body)];
-    if (!proxy) return false;
-    for (int k = 0; k < 3; ++k) {
-      if (!(proxy->m_aabbMin[k] <= high[k] && low[k] <= proxy->m_aabbMax[k])) return true;
-    }
-    return false;
+  const auto keep_meeting = [&](const Box& box) {
+    const auto is_far = [&](int body) {
+      const btBroadphaseProxy* const proxy = tree_->proxies[static_cast<std::size_t>(body)];
+      return proxy && !meet(*proxy, box);
+    };
+    near_.erase(std::remove_if(near_.begin(), near_.end(), is_far), near_.end());
   };
-  near_.erase(std::remove_if(near_.begin(), near_.end(), is_far), near_.end());
-  std::sort(near_.begin(), near_.end());
+  const btVector3 centre(p_W.x(), p_W.y(), p_W.z());
+  const Box box = around({centre, centre}, reach);
+  NearMemory* const memory = tree_->asked < tree_->memories.size() ? &tree_->memories[tree_->asked++] : nullptr;
+  if (!memory || !memory->holds(box, tree_->way)) {
+    const Box wide = around(box, memory ? NearMemory::kWider : 0);
+    near_.assign(unbounded_.begin(), unbounded_.end());
+    NearBodies found(near_);
+    tree_->bullet.aabbTest(wide.low, wide.high, found);
+    keep_meeting(wide);
+    std::sort(near_.begin(), near_.end());
+    if (memory) memory->note(wide, near_, tree_->way);
+  } else {
+    near_.assign(memory->bodies().begin(), memory->bodies().end());
+  }
+  keep_meeting(box);
   return near_;
 }
 

@@ -99,6 +99,47 @@ TEST(BroadPhase, HeapComesToRestWithoutSinking) {
   EXPECT_LE(kineticEnergy(h.model, h.state), 1e-7);  // 25 balls; 0.4 mm/s each
 }
 
+// Two fingers that ask tick by tick, one that stays and one that moves, among balls that creep, drift or jump.
+TEST(BroadPhase, RemembersNoBodyTooFewNearAFinger) {
+  WorldBuilder builder{WorldOptions{}};
+  std::vector<BodyStart> starts;
+  for (int k = 0; k < 40; ++k) builder.addBody({"ball", contact::Sphere{0.01}, true, 0.05, kGlass});
+  for (int k = 0; k < 2; ++k) builder.addPoint({});
+  const WorldModel model = builder.build();
+  WorldScratch scratch(model);
+  BroadPhase kept(model);
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<double> way(-1, 1);
+  const auto any = [&](double size) {
+    return Vec3(size * way(generator), size * way(generator), size * way(generator));
+  };
+  std::vector<Vec3> speeds;
+  for (BodyScratch& body : scratch.bodies) {
+    body.X_WI_mid.p = any(0.1);
+    speeds.push_back(any(2e-4));
+  }
+  Vec3 finger = Vec3::Zero();
+  int found = 0;
+  for (int tick = 0; tick < 600; ++tick) {
+    for (std::size_t k = 0; k < scratch.bodies.size(); ++k) {
+      Vec3& p = scratch.bodies[k].X_WI_mid.p;
+      p += speeds[k];
+      if (p.norm() > 0.1) speeds[k] = -2e-4 * p.normalized();
+    }
+    if (tick % 97 == 0) scratch.bodies[static_cast<std::size_t>(tick) % 40].X_WI_mid.p = any(0.05);
+    finger += any(5e-4);
+    BroadPhase fresh(model);
+    kept.candidates(model, scratch);
+    fresh.candidates(model, scratch);
+    for (const Vec3& place : {Vec3(Vec3::Zero()), finger}) {
+      const std::span<const int> near = kept.bodiesNear(place, 0.01), all = fresh.bodiesNear(place, 0.01);
+      EXPECT_TRUE(std::equal(near.begin(), near.end(), all.begin(), all.end())) << tick;
+      found += static_cast<int>(all.size());
+    }
+  }
+  EXPECT_GT(found, 600);  // there was something to miss
+}
+
 TEST(BroadPhase, ExcludedPairsNeverTouch) {
   WorldBuilder builder{WorldOptions{}};
   std::vector<BodyStart> starts;
