@@ -261,25 +261,28 @@ void copyRows(const WorldScratch& scratch, int k, int row, Island& island, Islan
   island.first_row[island.contacts] = island.rows = rows_before;
 }
 
-void gather(const WorldModel& model, WorldScratch& scratch) {
+// Of island k, whose rows begin with `row`.
+void gather(const WorldModel& model, int k, int row, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;
-  s.rows = 0;
-  for (std::size_t k = 0; k < s.islands.size(); ++k) {
-    Island& island = s.islands[k];
-    if (s.islands.size() == 1 && scratch.far_contacts == 0) {
-      takeRows(scratch, island);
-    } else {
-      copyRows(scratch, static_cast<int>(k), s.rows, island, s);
-    }
-    island.holds_trees = holdsTrees(s, island);
-    island.has_many_sides = hasManySides(s, island);
-    if (island.has_many_sides) {
-      fillManySides(model, scratch, static_cast<int>(k), island, s);
-    } else {
-      fillSides(model, scratch, island, s);
-    }
-    s.rows += island.rows;
+  Island& island = s.islands[static_cast<std::size_t>(k)];
+  if (s.islands.size() == 1 && scratch.far_contacts == 0) {
+    takeRows(scratch, island);
+  } else {
+    copyRows(scratch, k, row, island, s);
   }
+  island.holds_trees = holdsTrees(s, island);
+  island.has_many_sides = hasManySides(s, island);
+  if (island.has_many_sides) {
+    fillManySides(model, scratch, k, island, s);
+  } else {
+    fillSides(model, scratch, island, s);
+  }
+}
+
+int countRows(const WorldScratch& scratch) {
+  int rows = 0;
+  for (const int i : scratch.islands.near) rows += scratch.first_row[i + 1] - scratch.first_row[i];
+  return rows;
 }
 
 // For how long warm starts have to be exact to round-off: from an answer that took iterations on, until it is clear
@@ -365,20 +368,30 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
     uniteMovers(s);
     sortContacts(s);
   }
-  gather(model, scratch);
+  s.rows = countRows(scratch);
   const int count = static_cast<int>(s.islands.size());
-  const auto solve = [&](int k, int thread) { solveIsland(model, k, thread, scratch); };
-  if (s.threads && count > 1) {
-    s.threads->run(count, solve);
-  } else {
-    for (int k = 0; k < count; ++k) solve(k, 0);
-  }
+  const bool is_shared = s.threads && count > 1;
+  int row = 0;
   std::int64_t operations = 0;
-  for (const Island& island : s.islands) {
+  const auto prepare = [&](int k) {
+    gather(model, k, row, scratch);
+    row += s.islands[static_cast<std::size_t>(k)].rows;
+  };
+  const auto conclude = [&](const Island& island) {
     scatter(s, island, model.options, scratch);
     addResult(island.result, scratch.solve);
     operations += island.operations;
     scratch.hit_operations += island.hit_operations;
+  };
+  if (is_shared) {
+    for (int k = 0; k < count; ++k) prepare(k);
+    s.threads->run(count, [&](int k, int thread) { solveIsland(model, k, thread, scratch); });
+    for (const Island& island : s.islands) conclude(island);
+  }
+  for (int k = 0; k < count && !is_shared; ++k) {  // each as a whole, while it is in the cache
+    prepare(k);
+    solveIsland(model, k, 0, scratch);
+    conclude(s.islands[static_cast<std::size_t>(k)]);
   }
   if (scratch.operations_left < kNoLimit) scratch.operations_left -= operations;  // below 0 if one of them ran out
 }

@@ -78,8 +78,8 @@ namespace {
 
 std::uint64_t pairOf(std::uint64_t id) { return id >> 32; }
 
-// Contacts and memories come sorted by id: each finds its own on the way. Returns how
-// many contacts between bodies found none.
+// Contacts and memories come sorted by id: each finds its own on the way. Returns how many contacts between bodies
+// found none.
 int recallByIdentity(std::span<const ContactMemory> memories, WorldScratch& scratch) {
   int missing = 0;
   const ContactMemory *m = memories.data(), *const end = m + memories.size();
@@ -89,6 +89,7 @@ int recallByIdentity(std::span<const ContactMemory> memories, WorldScratch& scra
     const bool found = m != end && m->id == c.id;
     c.memory = found ? m : nullptr;
     missing += !found && c.a.kind == SideKind::kBody;
+    recall(c);
   }
   return missing;
 }
@@ -146,8 +147,11 @@ void recallByPlace(std::span<const ContactMemory> memories, std::span<Contact> c
 }  // namespace
 
 void recallContacts(std::span<const ContactMemory> memories, WorldScratch& scratch) {
-  if (recallByIdentity(memories, scratch) > 0) recallByPlace(memories, scratch.contacts);
-  for (Contact& c : scratch.contacts) recall(c);
+  if (recallByIdentity(memories, scratch) == 0) return;
+  recallByPlace(memories, scratch.contacts);
+  for (Contact& c : scratch.contacts) {
+    if (c.a.kind == SideKind::kBody) recall(c);
+  }
 }
 
 }  // namespace pincer::engine

@@ -282,7 +282,7 @@ GraspReport BaselineFingers::step(const GraspModel& model, GraspState& state, Gr
   for (std::size_t i = 0; i < methods_.size(); ++i) {
     const int finger = static_cast<int>(i);
     if (methods_[i] == FingerMethod::kProxy) {
-      reportFinger(model, state, finger, scratch);
+      reportFinger(model, state, finger, firstOf(contactsFrom(scratch, finger), finger), scratch);
     } else {
       scratch.fingers[i] = reports_[i];
     }

@@ -39,7 +39,7 @@ PadForce padForceOf(const FingerModel& finger, const Quat& q_WF, const TouchForc
 
 }  // namespace
 
-void mapPressure(const GraspModel& model, int finger, GraspScratch& scratch) {
+void mapPressure(const GraspModel& model, int finger, FingersContacts contacts, GraspScratch& scratch) {
   const FingerModel& f = model.fingers[finger];
   if (!f.taxels.isOn()) return;
   std::vector<Taxel>& map = scratch.taxels[finger];
@@ -55,7 +55,7 @@ void mapPressure(const GraspModel& model, int finger, GraspScratch& scratch) {
   const double h = scratch.world.h;
   const bool is_cut = h < model.world.options.h;
   if (is_cut) return put({report.touch.d_W, report.n_W, report.f_contact_W, report.torsion}, 0);
-  for (const engine::Contact& c : contactsOf(scratch, finger)) {
+  for (const engine::Contact& c : contacts) {
     if (!c.active()) continue;
     const double e = engine::rowsOf(c.material) > engine::kTorsionRow ? c.material.torsion_radius : 0;
     const double torsion = e > 0 ? c.r[engine::kTorsionRow] * e / h : 0;

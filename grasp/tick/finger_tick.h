@@ -11,14 +11,20 @@ namespace pincer::grasp {
 void setInputs(const GraspModel& model, const GraspState& state, std::span<const FingerInput> inputs,
                GraspScratch& scratch);
 
-// Fills scratch.fingers[finger] from the contacts of the tick.
-void reportFinger(const GraspModel& model, const GraspState& state, int finger, GraspScratch& scratch);
+// A finger's contacts, which follow each other, sorted by id.
+using FingersContacts = std::span<const engine::Contact>;
 
-// The finger's contacts, which follow each other, sorted by id.
-std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int finger);
+// Fills scratch.fingers[finger] from its contacts of the tick.
+void reportFinger(const GraspModel& model, const GraspState& state, int finger, FingersContacts contacts,
+                  GraspScratch& scratch);
+
+// Those of `finger` and, sorted, of all behind it.
+FingersContacts contactsFrom(const GraspScratch& scratch, int finger);
+// Those of `finger`, with which `sorted` begins if it has any.
+FingersContacts firstOf(FingersContacts sorted, int finger);
 
 // Fills FingerReport::pressure of a finger that has taxels, from its report and its contacts.
-void mapPressure(const GraspModel& model, int finger, GraspScratch& scratch);
+void mapPressure(const GraspModel& model, int finger, FingersContacts contacts, GraspScratch& scratch);
 
 // Notes in `state` what the next tick needs to know of scratch.fingers[finger],
 // and in that the touch of the tick before.

@@ -47,26 +47,27 @@ void setInputs(const GraspModel& model, const GraspState& state, std::span<const
   }
 }
 
-// Of thousands of fingers each would else look at all contacts.
-std::span<const engine::Contact> contactsOf(const GraspScratch& scratch, int finger) {
-  const std::vector<engine::Contact>& all = scratch.world.contacts;
+FingersContacts contactsFrom(const GraspScratch& scratch, int finger) {
+  const FingersContacts all = scratch.world.contacts;
   const auto less = [](const engine::Contact& c, std::uint64_t id) { return c.id < id; };
   // whatever it touches
   const std::uint64_t first_id = engine::contactId(0, {engine::SideKind::kPoint, 0, finger}, {}, 0);
-  const auto first = std::lower_bound(all.begin(), all.end(), first_id, less);
+  return {std::lower_bound(all.begin(), all.end(), first_id, less), all.end()};
+}
+
+FingersContacts firstOf(FingersContacts sorted, int finger) {
   const auto is_other = [&](const engine::Contact& c) {
     return c.a.kind != engine::SideKind::kPoint || c.a.index != finger;
   };
-  const auto begin = static_cast<std::size_t>(first - all.begin());
-  return std::span(all).subspan(begin, static_cast<std::size_t>(std::find_if(first, all.end(), is_other) - first));
+  return {sorted.begin(), std::find_if(sorted.begin(), sorted.end(), is_other)};
 }
 
 namespace {
 
 // Angular impulse about the normal at the mean place that the contacts' forces make by being apart.
-double momentOfPoints(const GraspScratch& scratch, int finger, const FingerReport& report) {
+double momentOfPoints(FingersContacts contacts, const FingerReport& report) {
   double moment = 0;
-  for (const engine::Contact& c : contactsOf(scratch, finger)) {
+  for (const engine::Contact& c : contacts) {
     if (!c.active()) continue;
     moment += report.n_W.dot((c.p_W - report.p_WC).cross(c.impulse_W));
   }
@@ -75,11 +76,11 @@ double momentOfPoints(const GraspScratch& scratch, int finger, const FingerRepor
 
 // Sums the contacts of one finger into its report; returns the way from its centre to their
 // force-weighted mean place, or its direction.
-Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport& report) {
+Vec3 sumContacts(FingersContacts contacts, const Vec3& p_mid_W, double h, FingerReport& report) {
   Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero(), tangential_W = Vec3::Zero();
   double normal = 0, torsion = 0, largest = 0;  // impulses
   int pushing = 0;
-  for (const engine::Contact& c : contactsOf(scratch, finger)) {
+  for (const engine::Contact& c : contacts) {
     if (!c.active()) continue;
     const double r_n = c.r[engine::kNormalRow];
     const Vec3 n_W = c.n_W();
@@ -107,10 +108,10 @@ Vec3 sumContacts(const GraspScratch& scratch, int finger, double h, FingerReport
   if (pushing > 1) {
     report.p_WC = p_sum / normal;
     if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
-    report.torsion += momentOfPoints(scratch, finger, report) / h;
+    report.torsion += momentOfPoints(contacts, report) / h;
   }
   PINCER_ASSERT(isUnitIfFinite(report.n_W) && report.body >= 0);
-  const Vec3 to_mean = report.p_WC - scratch.world.points[finger].p_mid_W;
+  const Vec3 to_mean = report.p_WC - p_mid_W;
   return to_mean.squaredNorm() > 0 ? to_mean : Vec3(-report.n_W);
 }
 
@@ -139,18 +140,19 @@ void reportTouch(const GraspModel& model, int finger, const Vec3& touch_W, Grasp
 
 }  // namespace
 
-void reportFinger(const GraspModel& model, const GraspState& state, int finger, GraspScratch& scratch) {
+void reportFinger(const GraspModel& model, const GraspState& state, int finger, FingersContacts contacts,
+                  GraspScratch& scratch) {
   const double h = scratch.world.h;
   FingerReport& report = scratch.fingers[finger];
   const engine::PointScratch& point = scratch.world.points[finger];
-  const Vec3 touch_W = sumContacts(scratch, finger, h, report);
+  const Vec3 touch_W = sumContacts(contacts, point.p_mid_W, h, report);
   reportTouch(model, finger, touch_W, scratch);
   const double tick = model.world.options.h;
   if (h < tick) averageOverTick(point, tick, report);
   report.f_user_W = report.f_contact_W + scratch.inputs[finger].f_W;
   const double mass = model.fingers[finger].coupling.mass;
   if (mass > 0) report.f_user_W -= mass / tick * (state.world.points[finger].v_W - point.v_tick_W);
-  mapPressure(model, finger, scratch);
+  mapPressure(model, finger, contacts, scratch);
 }
 
 void rememberFinger(const GraspModel& model, const FingerInput& input, int finger, GraspState& state,
@@ -239,8 +241,12 @@ GraspReport step(const GraspModel& model, GraspState& state, GraspScratch& scrat
   const engine::StepReport report =
       engine::step(model.world, state.world, scratch.world, {scratch.inputs, motions, applied, controls}, &contacts);
   if (report.asleep) return {report, scratch.fingers};  // those of the last tick
+  // Of thousands of fingers each would else look at all contacts.
+  FingersContacts left = contactsFrom(scratch, 0);
   for (int i = 0; i < static_cast<int>(inputs.size()); ++i) {
-    reportFinger(model, state, i, scratch);
+    const FingersContacts own = firstOf(left, i);
+    left = left.subspan(own.size());
+    reportFinger(model, state, i, own, scratch);
     rememberFinger(model, inputs[i], i, state, scratch);
   }
   engine::mark(scratch.world, engine::Stage::kFingerReport);
