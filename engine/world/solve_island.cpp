@@ -1,6 +1,7 @@
 #include "pincer/engine/world/solve_island.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/few_contacts.h"
@@ -23,13 +24,16 @@ namespace {
 constexpr double kLost = 1e-2;  // residual that is no answer
 // of more than kFewContacts, whose impulses may have been scaled down to add no energy
 constexpr double kHeapLost = 0.3;
-constexpr int kStoppingSweeps = 30;    // instead
+constexpr int kStoppingSweeps = 30;                      // instead
+constexpr std::int64_t kPushOperations = 50'000;         // multiplications per contact, twice what was needed
+constexpr double kMostPushed = 10 * kLargestCorrection;  // of what is pushed out, chosen [m/s]
 constexpr double kLargestGive = 1e-4;  // by which contacts around loops of bodies may contradict each other [m/s]
 
 class IslandSolve {
  public:
   IslandSolve(const WorldModel& model, int k, int thread, WorldScratch& scratch)
-      : options_(model.options.solver),
+      : model_(model),
+        options_(model.options.solver),
         scratch_(scratch),
         island_(scratch.islands.islands[k]),
         memory_(*scratch.islands.solvers[thread]),
@@ -133,6 +137,7 @@ class IslandSolve {
   void solveWithoutPushes() {
     const SolveResult pushed = island_.result;
     keepAnswer();
+    if (hasOnlyJoined() && findsPushes()) return;
     dropPushes();
     std::fill(island_.r, island_.r + island_.rows, 0.0);
     solveAgain(options_);
@@ -144,6 +149,36 @@ class IslandSolve {
     const int iterations = island_.result.iterations;
     island_.result = pushed;
     island_.result.iterations = iterations;
+  }
+  // True if nothing moves but what joints hold: what is led might close on it.
+  bool hasOnlyJoined() const {
+    const auto moves_freely = [&](const Side& side) {
+      if (side.kind != SideKind::kBody) return side.kind == SideKind::kPoint;
+      const BodyModel& body = model_.bodies[side.index];
+      return body.driven || (body.dynamic && !isJoined(body));
+    };
+    return std::none_of(order_.begin(), order_.end(), [&](int n) {
+      const Contact& c = scratch_.contacts[static_cast<std::size_t>(n)];
+      return moves_freely(c.a) || moves_freely(c.b);
+    });
+  }
+  // Newton's method may fail on bodies of few freedoms, whose W has a low rank, though joints let them be pushed out.
+  // Then the search finds impulses. Bounded, as jams have none; what is nearly jammed would be flung.
+  bool findsPushes() {
+    const std::int64_t before = memory_.operations_left, most = kPushOperations * island_.contacts;
+    memory_.operations_left = std::min(before, most);
+    std::fill(island_.r, island_.r + island_.rows, 0.0);
+    const SolveResult first = island_.result;
+    searchOn();
+    memory_.operations_left += before - std::min(before, most);
+    if (island_.result.converged && !flings()) return true;
+    island_.result = first;
+    return false;
+  }
+  bool flings() const {
+    double fastest = 0;
+    for (int row = 0; row < island_.rows; ++row) fastest = std::max(fastest, std::abs(island_.u[row]));
+    return !(fastest <= kMostPushed);
   }
   void keepAnswer() {
     std::copy(island_.r, island_.r + island_.rows, memory_.kept_r.begin());
@@ -266,6 +301,7 @@ class IslandSolve {
            island_.result.residual > (island_.contacts > kFewContacts ? kHeapLost : kLost);
   }
 
+  const WorldModel& model_;
   const SolverOptions& options_;
   WorldScratch& scratch_;
   Island& island_;

@@ -60,6 +60,9 @@ class Linkage {
   double energy() const { return engine::kineticEnergy(model_, state_) + engine::potentialEnergy(model_, state_); }
   const engine::WorldState& state() const { return state_; }
   double time() const { return state_.time; }
+  double tickLength() const { return options_.h; }
+  int contactCount() const { return engine::contactCount(*scratch_); }  // in the last tick
+  engine::ContactReport contact(int k) const { return engine::contactAt(*scratch_, k); }
 
   std::vector<engine::DriveInput> controls;
   int flagged = 0;

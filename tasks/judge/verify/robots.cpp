@@ -1,15 +1,12 @@
-// Trees as robots are: their equations as a whole, free flight, a jaw on a linkage.
+// Trees as robots are: free flight, a jaw on a linkage.
 //
 //   flight         two hinged bodies on which nothing acts: both momenta; energy to 2nd order in the tick
-//   equations      accelerations of random trees against Lagrange's equations, with the mass matrix as the sum of
-//                  J^T I J over the links and its slopes by differences
 //   linkage-grip   a jaw on four bars with a spring between two of them presses on a sprung plate: virtual work
 #include <fmt/format.h>
 
 #include "pincer/tasks/judge/exact/linkages.h"
 #include "pincer/tasks/judge/verify/linkage.h"
 #include "pincer/tasks/judge/verify/verify.h"
-#include "pincer/tasks/lab/participants/random.h"
 
 namespace pincer::tasks {
 namespace {
@@ -78,173 +75,6 @@ std::vector<Record> flight(MeasureContext& context) {
           atMost("energy in 60 s, drift over itself", whole.energy, "-", 4e-5),
           atLeast("energy at 2 ms over 1 ms, drifts", coarse.energy / fine.energy, "-", 3.5),
           exactly("flagged ticks", whole.flagged, "-", 0)};
-}
-
-// --- Equations
-
-// A tree of pivots and sliders on the world, as a textbook writes it.
-struct TextbookLink {
-  int parent = -1;
-  bool slides = false;
-  Pose X_PJ,
-      X_LJ;  // the joint, its axis z, in the parent's and the link's own frame, whose origin is the centre of mass
-  double mass = 0;
-  Vec3 moments = Vec3::Zero();
-};
-
-class TextbookTree {
- public:
-  explicit TextbookTree(std::vector<TextbookLink> links) : links_(std::move(links)) {}
-
-  const std::vector<TextbookLink>& links() const { return links_; }
-  Pose linkPose(const Eigen::VectorXd& q, int link) const { return posesAt(q)[static_cast<std::size_t>(link)]; }
-
-  // v' = M^-1 (tau - C): C_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i.
-  Eigen::VectorXd accelerations(const Eigen::VectorXd& q, const Eigen::VectorXd& v, const Eigen::VectorXd& tau) const {
-    const Eigen::Index n = q.size();
-    std::vector<Eigen::MatrixXd> slope;
-    Eigen::VectorXd bias = Eigen::VectorXd::Zero(n);
-    for (Eigen::Index k = 0; k < n; ++k) {
-      slope.push_back(slopeAlong(q, k, [this](const Eigen::VectorXd& at) { return massMatrix(at); }));
-      bias[k] = slopeAlong(q, k, [this](const Eigen::VectorXd& at) {
-        return Eigen::MatrixXd(Eigen::MatrixXd::Constant(1, 1, potential(at)));
-      })(0, 0);
-    }
-    for (Eigen::Index k = 0; k < n; ++k) {
-      bias += v[k] * (slope[static_cast<std::size_t>(k)] * v);
-      bias[k] -= 0.5 * v.dot(slope[static_cast<std::size_t>(k)] * v);
-    }
-    return massMatrix(q).ldlt().solve(tau - bias);
-  }
-
- private:
-  std::vector<Pose> posesAt(const Eigen::VectorXd& q) const {
-    std::vector<Pose> poses;
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      const TextbookLink& link = links_[i];
-      const double way = q[static_cast<Eigen::Index>(i)];
-      const Pose moved =
-          link.slides ? Pose{Quat::Identity(), {0, 0, way}} : Pose{quatFromRotationVector({0, 0, way}), Vec3::Zero()};
-      const Pose X_WP = link.parent < 0 ? Pose{} : poses[static_cast<std::size_t>(link.parent)];
-      poses.push_back(X_WP * link.X_PJ * moved * link.X_LJ.inverse());
-    }
-    return poses;
-  }
-
-  // The sum of m J_v^T J_v + J_w^T I J_w.
-  Eigen::MatrixXd massMatrix(const Eigen::VectorXd& q) const {
-    const std::vector<Pose> poses = posesAt(q);
-    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(q.size(), q.size());
-    for (std::size_t i = 0; i < links_.size(); ++i) {
-      Eigen::MatrixXd J_v = Eigen::MatrixXd::Zero(3, q.size()), J_w = J_v;
-      for (int at = static_cast<int>(i); at >= 0; at = links_[static_cast<std::size_t>(at)].parent) {
-        const TextbookLink& link = links_[static_cast<std::size_t>(at)];
-        const Pose X_WJ = poses[static_cast<std::size_t>(at)] * link.X_LJ;
-        const Vec3 axis = X_WJ.q * Vec3::UnitZ();
-        J_v.col(at) = link.slides ? axis : Vec3(axis.cross(poses[i].p - X_WJ.p));
-        if (!link.slides) J_w.col(at) = axis;
-      }
-      const Mat3 R = poses[i].q.toRotationMatrix();
-      const Mat3 I_W = R * links_[i].moments.asDiagonal() * R.transpose();
-      M += links_[i].mass * J_v.transpose() * J_v + J_w.transpose() * I_W * J_w;
-    }
-    return M;
-  }
-
-  double potential(const Eigen::VectorXd& q) const {
-    const std::vector<Pose> poses = posesAt(q);
-    double sum = 0;
-    for (std::size_t i = 0; i < links_.size(); ++i) sum += links_[i].mass * kVerifyG * poses[i].p.z();
-    return sum;
-  }
-
-  // By differences of 4th order, error below 1e-11 of the function at this step.
-  template <class F>
-  static Eigen::MatrixXd slopeAlong(const Eigen::VectorXd& q, Eigen::Index k, const F& f) {
-    constexpr double kStep = 1e-3;  // [rad or m]
-    const auto at = [&](double way) {
-      Eigen::VectorXd moved = q;
-      moved[k] += way;
-      return f(moved);
-    };
-    return (8 * (at(kStep) - at(-kStep)) - (at(2 * kStep) - at(-2 * kStep))) / (12 * kStep);
-  }
-
-  std::vector<TextbookLink> links_;
-};
-
-Pose anyPose(Random& random, double reach) {
-  const Vec3 turn = random.normal3(), p = random.normal3();
-  return {quatFromRotationVector(turn), reach * p};
-}
-
-// Links on random parents, so that chains and branches come up: masses over 30, any axes.
-TextbookTree randomTree(Random& random, int count) {
-  std::vector<TextbookLink> links;
-  for (int i = 0; i < count; ++i) {
-    TextbookLink link;
-    link.parent =
-        static_cast<int>(random.below(static_cast<std::uint64_t>(std::min(i, 3)) + 1)) + std::max(i - 3, 0) - 1;
-    link.slides = random.below(4) == 0;
-    link.X_PJ = anyPose(random, 0.1);
-    link.X_LJ = anyPose(random, 0.05);
-    link.mass = 0.1 * math::pow(30, random.uniform());
-    const double a = random.uniform(0.5, 1), b = random.uniform(0.5, 1), c = random.uniform(0.5, 1);
-    link.moments = 1e-3 * link.mass * Vec3(b + c, a + c, a + b);
-    links.push_back(link);
-  }
-  return TextbookTree(std::move(links));
-}
-
-// The rates after one tick from there, under constant torques.
-Eigen::VectorXd ratesAfter(const TextbookTree& tree, const Eigen::VectorXd& q, const Eigen::VectorXd& v,
-                           const Eigen::VectorXd& tau, double h) {
-  Linkage world(h);
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(q.size());
-  const int count = static_cast<int>(tree.links().size());
-  for (int i = 0; i < count; ++i) {
-    const TextbookLink& link = tree.links()[static_cast<std::size_t>(i)];
-    engine::BodySpec spec{fmt::format("link{}", i), contact::Sphere{0.001}, true, link.mass, {}};
-    spec.inertia = engine::GivenInertia{Vec3::Zero(), link.moments.asDiagonal()};
-    world.body(spec, {tree.linkPose(zero, i)});
-    for (int other = 0; other < i; ++other) world.exclude(other, i);
-  }
-  for (int i = 0; i < count; ++i) {
-    const TextbookLink& link = tree.links()[static_cast<std::size_t>(i)];
-    world.joint({link.slides ? JointKind::kSlider : JointKind::kPivot, i, link.parent, link.X_LJ, link.X_PJ});
-    world.drive(motorOn(i));
-  }
-  world.build();
-  for (int i = 0; i < count; ++i) {
-    world.controls[static_cast<std::size_t>(i)].value = tau[i];
-    world.set(i, q[i], v[i]);
-  }
-  world.tick();
-  Eigen::VectorXd rates(count);
-  for (int i = 0; i < count; ++i) rates[i] = world.flagged > 0 ? std::nan("") : world.velocity(i);
-  return rates;
-}
-
-// Of q, v and -v: time runs backwards as it runs forwards, so the mean of both is off by h^2 v'''/6 only.
-std::vector<Record> equations(MeasureContext& context) {
-  constexpr double kTick = 1e-5;  // [s]
-  constexpr int kTrees = 40;
-  double worst = 0;
-  for (int n = 0; n < kTrees; ++n) {
-    Random random(static_cast<std::uint64_t>(n) + 1);
-    const TextbookTree tree = randomTree(random, 1 + n % 10);
-    const auto draw = [&](double most) {
-      Eigen::VectorXd x(static_cast<Eigen::Index>(tree.links().size()));
-      for (double& value : x) value = random.uniform(-most, most);
-      return x;
-    };
-    const Eigen::VectorXd q = draw(0.5), v = draw(1), tau = draw(0.5);
-    const Eigen::VectorXd a = (ratesAfter(tree, q, v, tau, kTick) + ratesAfter(tree, q, -v, tau, kTick)) / (2 * kTick);
-    const Eigen::VectorXd exact = tree.accelerations(q, v, tau);
-    worst = std::max(worst, (a - exact).norm() / exact.norm());
-    context.progress((n + 1.0) / kTrees);
-  }
-  return {atMost(fmt::format("accelerations of {} trees of 1 to 10 joints, error", kTrees), worst, "-", 1e-8)};
 }
 
 // --- A jaw on four bars
@@ -349,8 +179,6 @@ std::vector<Record> linkageGrip(MeasureContext& context) {
 
 }  // namespace
 
-std::vector<Measurement> verifyRobots() {
-  return {{"tree/flight", flight}, {"tree/equations", equations}, {"tree/linkage-grip", linkageGrip}};
-}
+std::vector<Measurement> verifyRobots() { return {{"tree/flight", flight}, {"tree/linkage-grip", linkageGrip}}; }
 
 }  // namespace pincer::tasks

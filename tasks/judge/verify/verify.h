@@ -23,6 +23,7 @@ std::vector<Measurement> verifyClearance();
 std::vector<Measurement> verifyJointLimits();
 std::vector<Measurement> verifyGrippers();
 std::vector<Measurement> verifyRobots();
+std::vector<Measurement> verifyTreeEquations();
 std::vector<Measurement> verifyHands();
 std::vector<Measurement> verifyToppling();
 std::vector<Measurement> verifyBouncing();

@@ -118,6 +118,34 @@ TEST_P(PressedLinks, HoldABoxAgainstAWallWithoutCreep) {
   EXPECT_TRUE(world.asleep);
 }
 
+// A slider was left in two pegs for good, though friction doesn't jam it: Newton's method failed on a W of rank one.
+TEST_P(PressedLinks, OfOneFreedomAreMovedOutOfWhatTheyOverlap) {
+  constexpr double kApart = 2 * kTip - 1e-4, kFriction = 0.4;
+  for (const double tilt : {0.05, 0.15, 0.25, 0.35}) {  // of what pushes from the way that is free, < atan(0.4)
+    WorldOptions options = tickOf(GetParam());
+    options.gravity_W.setZero();
+    WorldBuilder builder(options);
+    std::vector<BodyStart> starts{at(Vec3::Zero())};
+    BodySpec carriage{"carriage", {}, true, 0.2, roughness(kFriction)};
+    for (const double x : {-0.05, 0.05})
+      carriage.shapes.push_back(
+          {.name = std::to_string(x), .shape = contact::Sphere{kTip}, .X_BS = {Quat::Identity(), {x, 0, 0}}});
+    builder.addJoint({JointKind::kSlider, builder.addBody(carriage), -1, Pose{}, Pose{}, 0});
+    for (const double x : {-0.05, 0.05}) {
+      starts.push_back(at({x, kApart * std::sin(tilt), -kApart * std::cos(tilt)}));
+      builder.addBody({std::to_string(x), contact::Sphere{kTip}, false, 1, roughness(kFriction)});
+    }
+    World world(builder, starts);
+    world.run(0.5);
+    for (const int peg : {1, 2}) {
+      const Vec3& peg_W = world.state.bodies[static_cast<std::size_t>(peg)].X_WI.p;
+      const Vec3 ball_W = world.state.bodies[0].X_WI.p + Vec3(peg_W.x(), 0, 0);
+      EXPECT_GT((ball_W - peg_W).norm() - 2 * kTip, -2e-6) << tilt;
+    }
+    EXPECT_EQ(world.status, kStepOk);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Ticks, PressedLinks, ::testing::Values(5e-4, 1e-3, 2e-3));
 
 }  // namespace
