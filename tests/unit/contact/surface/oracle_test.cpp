@@ -36,7 +36,7 @@ std::vector<Vec3> samplePatches(const SurfaceNet& net) {
   return points;
 }
 
-struct Case {
+struct OracleCase {
   TriangleMesh mesh;
   double slack;  // what the shading normals' lean over the geometric ones costs in distance [m]
 };
@@ -44,11 +44,11 @@ struct Case {
 // phi + r is the distance to the surface: the contact lies on it (a sample is as near as the samples are dense), and no
 // sample is nearer to the centre by more than the normals' lean costs, h (1 - cos lean).
 TEST(SurfaceOracle, NoSampleOfTheSurfaceIsNearer) {
-  for (const Case& c : {Case{icosphere(0.02, 2), 2e-6},
-                        {torus(0.03, 0.012, 24, 12), 20e-6},
-                        {cylinderWithFlat(0.025, 0.03, 0.018, 20, 6), 2e-6},
-                        {box({0.02, 0.015, 0.03}), 1e-9},
-                        {roundedCube(0.02, 0.004, 3), 20e-6}}) {
+  for (const OracleCase& c : {OracleCase{icosphere(0.02, 2), 2e-6},
+                              {torus(0.03, 0.012, 24, 12), 20e-6},
+                              {cylinderWithFlat(0.025, 0.03, 0.018, 20, 6), 2e-6},
+                              {box({0.02, 0.015, 0.03}), 1e-9},
+                              {roundedCube(0.02, 0.004, 3), 20e-6}}) {
     const std::vector<Vec3> samples = samplePatches(SurfaceNet(c.mesh, 0.7, true));
     const auto object = SmoothMesh::build(c.mesh);
     RandomNumbers random(7);
