@@ -1,8 +1,9 @@
 // A robot's model by MuJoCo (npm's @mujoco/mujoco), with the files of its folder: load(module, file) gives {mujoco, model, data, nameAt}.
+// `change`, where it is given, takes the file's text and gives that of the model.
 import fs from 'node:fs';
 import path from 'node:path';
 
-export async function load(module, file) {
+export async function load(module, file, change = (text) => text) {
   const mujoco = await (await import(module)).default();
   function copy(from, to) {
     mujoco.FS.mkdir(to);
@@ -13,6 +14,7 @@ export async function load(module, file) {
     }
   }
   copy(path.dirname(file), '/robot');
+  mujoco.FS.writeFile(`/robot/${path.basename(file)}`, new TextEncoder().encode(change(fs.readFileSync(file, 'utf8'))));
   const model = mujoco.MjModel.from_xml_path(`/robot/${path.basename(file)}`);
   const nameAt = (address) => {
     let end = address;

@@ -10,6 +10,7 @@ fingers may press as they like it says only which weights no force bears at all.
 its weight, or jaws let go what their limit allows.
 """
 import argparse
+import math
 import os
 import sys
 
@@ -21,7 +22,8 @@ from scipy.optimize import linprog
 TICK, SECONDS, SIDES, MARGIN, STAYS, GOES = 0.002, 10.0, 64, 0.05, 1e-9, 1e-6
 FRANKA = {"file": "franka_emika_panda/hand.xml", "center": (0, 0, 0.1), "spread": (0.004, 0, 0.004), "drives": {"actuator8": (255, 0, 0)}, "least": 2,
           "start": {"finger_joint1": 0.04, "finger_joint2": 0.04}, "masses": (0.02, 0.25)}
-HANDS = {"franka": FRANKA, "shadow": {**pushes.HANDS["shadow"], "least": 3, "masses": (0.05, 0.5)}}
+# A model of Shadow takes longer to build than a grasp to close: it serves some poses of its object.
+HANDS = {"franka": FRANKA, "shadow": {**pushes.HANDS["shadow"], "least": 3, "masses": (0.05, 0.5), "poses": 10}}
 
 
 def draw_object(name, random):
@@ -41,12 +43,19 @@ def load(name, hand, path, random):
                                     "bodies": [{"name": "thing", "shape": shape, "mass": mass, "position": list(place), "rotation": list(turn), "material": {"mu_s": 0.36}}]})
 
 
-def close(hand, model, random):
-    """The state, its inputs and the object's number, once the hand holds it without gravity; or None."""
+def draw_pose(hand, random):
+    turn = pushes.draw_turn(random)
+    angle = numpy.linalg.norm(turn)
+    place = numpy.array(hand["center"]) + random.uniform(-1, 1, 3) * hand["spread"]
+    return [*place, math.cos(angle / 2), *(turn / angle * math.sin(angle / 2))]
+
+
+def close(hand, model, pose, random):
+    """The state, its inputs and the object's number, once the hand holds it without gravity; or None. `pose`: where it starts, None: where the model has it."""
     state, inputs, thing = pincer.State(model), pincer.Inputs(model), model.bodies.index("thing")
     inputs.drive_target[:] = 0
     drives = [(model.drives.index(f"hand_{drive}"), *ends) for drive, ends in hand["drives"].items()]
-    start = state.body("thing").position.copy()
+    start = state.body("thing").position.copy() if pose is None else pose
     targets = [random.uniform(low, high) for _, _, low, high in drives]
     for d, opened, _, _ in drives:
         inputs.drive_target[d] = opened
@@ -112,9 +121,11 @@ def judge(name, hand, path, arguments):
     random = numpy.random.default_rng(arguments.seed)
     jaws, counts, draws, flags, wrong, went = name == "franka", {"held": 0, "moves": 0, "lost": 0}, 0, 0, 0, []
     while sum(counts.values()) < arguments.grasps and draws < arguments.draws:
+        is_new = draws % hand.get("poses", 1) == 0
         draws += 1
-        kind, mass, model = load(name, hand, path, random)
-        grasp, direction = close(hand, model, random), random.normal(size=3)
+        if is_new:
+            kind, mass, model = load(name, hand, path, random)
+        grasp, direction = close(hand, model, None if is_new else draw_pose(hand, random), random), random.normal(size=3)
         if grasp is None:
             continue
         state, inputs, thing = grasp
