@@ -34,6 +34,7 @@ struct SimArguments {
   std::string devices = "scene";
   ViewOptions view;
   SimOptions options;
+  RobotFileOptions robots;
   bool json = false;
 };
 
@@ -55,7 +56,7 @@ int watch(Simulation& simulation, const SimArguments& arguments, const std::atom
 }
 
 int runOne(const SimArguments& arguments, const std::string& file) {
-  Scene scene = readSceneOrBuiltin(file);
+  Scene scene = readSceneOrBuiltin(file, arguments.robots);
   if (!scene.remarks.empty()) print(stderr, "{}", scene.remarks);
   asUsage([&] { applyOptions(arguments.options, scene); });
   Simulation simulation(std::move(scene));
@@ -95,7 +96,9 @@ int runSim(const SimArguments& arguments) {
 void addSimCommand(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<SimArguments>();
   CLI::App* command = app.add_subcommand("sim", "Plain physics of a scene: states, records, expectations");
-  command->add_option("scene", arguments->scenes, "Scene files (JSON), or names of built-in scenes")->required();
+  command
+      ->add_option("scene", arguments->scenes, "Scene or robot files (JSON, MJCF, URDF), or names of built-in scenes")
+      ->required();
   command->add_option("--duration", arguments->options.duration, "Simulated time in place of the scene's [s]")
       ->check(within(ranges::kDuration));
   command->add_option("--every", arguments->options.every, "Time between recorded rows in place of the scene's [s]")
@@ -105,6 +108,10 @@ void addSimCommand(CLI::App& app, int& exit_code) {
                     "Say how well the fingers hold each body at the end: slip margins, force closure, epsilon");
   command->add_flag("--awake", arguments->options.awake,
                     "Compute every tick, also those that would repeat the last one");
+  command->add_option("--keyframe", arguments->robots.keyframe,
+                      "Of a robot's file: where it starts and what its drives are told; else as drawn");
+  command->add_option("--allow", arguments->robots.allowed_folders, "Further folders that robots' files may lie in")
+      ->allow_extra_args(false);
   addViewOptions(*command, arguments->view);
   command->add_flag(
       "--from-operator", arguments->view.as_operator,

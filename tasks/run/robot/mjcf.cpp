@@ -8,18 +8,86 @@ namespace pincer::tasks {
 namespace mjcf {
 namespace {
 
-// Switches of whole kinds of force: what is on without saying so may be said to be on.
-void readFlags(const XmlElement& element, Robot& robot) {
-  const Values values(element);
-  // Words of a flag, and flags whose kind of force can't be left out here.
-  constexpr std::string_view kWords[] = {"disable", "enable"};
-  constexpr std::string_view kNeeded[] = {"constraint", "equality", "frictionloss", "limit",    "contact",
-                                          "spring",     "damper",   "clampctrl",    "actuation"};
-  for (const std::string_view name : kNeeded) {
-    if (values.oneOf(name, kWords, 1) == 0)
-      values.reject(name, "can't be switched off as a whole here: leave out the parts themselves.");
+// Each kind of force that a flag can switch off, and the parts of a robot that make it.
+void switchOffContact(Robot& robot) {
+  const auto let_through = [](std::vector<RobotGeom>& geoms) {
+    for (RobotGeom& geom : geoms) geom.contype = geom.conaffinity = 0;
+  };
+  for (RobotBody& body : robot.bodies) let_through(body.geoms);
+  let_through(robot.world_geoms);
+}
+
+template <class Change>
+void forEachJoint(Robot& robot, Change change) {
+  for (RobotBody& body : robot.bodies) {
+    for (RobotJoint& joint : body.joints) change(joint);
   }
-  if (values.oneOf("gravity", kWords, 1) == 0) robot.gravity_W.setZero();
+}
+
+void switchOffLimits(Robot& robot) {
+  forEachJoint(robot, [](RobotJoint& joint) { joint.limits.reset(); });
+  for (RobotTendon& tendon : robot.tendons) tendon.limits.reset();
+}
+
+void switchOffFriction(Robot& robot) {
+  forEachJoint(robot, [](RobotJoint& joint) { joint.friction = 0; });
+  for (RobotTendon& tendon : robot.tendons) tendon.friction = 0;
+}
+
+void switchOffEqualities(Robot& robot) {
+  robot.couplings.clear();
+  robot.loops.clear();
+}
+
+void switchOffConstraints(Robot& robot) {
+  switchOffContact(robot);
+  switchOffLimits(robot);
+  switchOffFriction(robot);
+  switchOffEqualities(robot);
+}
+
+void switchOffSprings(Robot& robot) {
+  forEachJoint(robot, [](RobotJoint& joint) { joint.stiffness = 0; });
+  for (RobotTendon& tendon : robot.tendons) tendon.stiffness = 0;
+}
+
+void switchOffDampers(Robot& robot) {
+  forEachJoint(robot, [](RobotJoint& joint) { joint.damping = 0; });
+  for (RobotTendon& tendon : robot.tendons) tendon.damping = 0;
+}
+
+void switchOffControlRanges(Robot& robot) {
+  for (RobotDrive& drive : robot.drives) drive.controls.reset();
+}
+
+void switchOffDrives(Robot& robot) {
+  robot.drives.clear();
+  for (RobotKeyframe& key : robot.keyframes) key.controls.clear();
+}
+
+struct Flag {
+  std::string_view name;
+  void (*switchOff)(Robot& robot);
+};
+constexpr Flag kFlags[] = {
+    {"constraint", switchOffConstraints},  {"equality", switchOffEqualities},
+    {"frictionloss", switchOffFriction},   {"limit", switchOffLimits},
+    {"contact", switchOffContact},         {"spring", switchOffSprings},
+    {"damper", switchOffDampers},          {"actuation", switchOffDrives},
+    {"clampctrl", switchOffControlRanges}, {"gravity", [](Robot& robot) { robot.gravity_W.setZero(); }},
+};
+
+// After all else: parts that a flag switches off have been held against the format as all others.
+void readFlags(const Document& document, Robot& robot) {
+  constexpr std::string_view kWords[] = {"disable", "enable"};
+  for (const XmlElement* option : sections(document, "option")) {
+    for (const XmlElement& element : option->children) {
+      const Values values(element);
+      for (const Flag& flag : kFlags) {
+        if (values.oneOf(flag.name, kWords, 1) == 0) flag.switchOff(robot);
+      }
+    }
+  }
 }
 
 void readOptions(const Document& document, Robot& robot) {
@@ -28,9 +96,6 @@ void readOptions(const Document& document, Robot& robot) {
     robot.tick = values.number("timestep", robot.tick);
     if (!(robot.tick > 0)) values.reject("timestep", "isn't positive.");
     robot.gravity_W = values.vector("gravity", robot.gravity_W);
-  }
-  for (const XmlElement* element : sections(document, "option")) {
-    for (const XmlElement& child : element->children) readFlags(child, robot);
   }
 }
 
@@ -48,9 +113,11 @@ RobotImport readMjcf(const std::string& path, const std::vector<std::string>& al
   mjcf::Reading reading{document, robot, {}, {}, {}};
   mjcf::readMeshes(reading);
   mjcf::readBodies(reading);
+  mjcf::noteFrictionless(reading);
   mjcf::readRelations(reading);
   mjcf::readActuators(reading);
   mjcf::readKeyframes(reading);
+  mjcf::readFlags(document, robot);
   result.notes = std::move(document.notes);
   return result;
 }

@@ -137,6 +137,8 @@ RobotDrive readDrive(const Reading& reading, const XmlElement& element) {
       values.element().find("name") ? values.text("name") : fmt::format("drive{}", reading.robot.drives.size());
   connect(reading, values, drive);
   if (!draft.has_bias) drive.bias.setZero();
+  if (draft.inherit_range > 0 && values.range("ctrlrange").value_or(Vec2::Zero()) != Vec2::Zero())
+    values.reject("ctrlrange", "stands beside an inheritrange, its own or its class'. Keep one of the two.");
   drive.controls = values.limits("ctrlrange", "ctrllimited", reading.compiler().autolimits);
   if (!drive.controls && draft.inherit_range > 0) drive.controls = inheritedRange(reading, values, draft);
   drive.forces = values.limits("forcerange", "forcelimited", reading.compiler().autolimits);

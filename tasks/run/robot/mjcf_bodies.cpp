@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <set>
 
 #include "pincer/contact/io/printable.h"
 #include "pincer/tasks/run/files/spelling.h"
@@ -22,13 +23,27 @@ struct Surroundings {
 
 class BodyReader {
  public:
-  explicit BodyReader(Reading& reading) : reading_(reading), robot_(reading.robot) {}
+  explicit BodyReader(Reading& reading) : reading_(reading), robot_(reading.robot) {
+    for (const XmlElement* section : sections(reading.document, "worldbody")) collectNames(*section);
+  }
 
   void readChildren(const XmlElement& element, const Surroundings& around) {
     for (const XmlElement& child : element.children) readChild(child, around);
   }
 
  private:
+  void collectNames(const XmlElement& element) {
+    const std::string* name = element.find("name");
+    if (name) given_names_.insert(*name);
+    for (const XmlElement& child : element.children) collectNames(child);
+  }
+
+  // A name for a part without one: this one, or the first longer one that the file doesn't give to something else.
+  std::string unusedName(std::string name) const {
+    while (given_names_.count(name)) name += "_";
+    return name;
+  }
+
   void readChild(const XmlElement& child, const Surroundings& around) {
     if (child.tag == "body") readBody(child, around);
     if (child.tag == "frame") readFrame(child, around);
@@ -51,7 +66,8 @@ class BodyReader {
     const int index = static_cast<int>(robot_.bodies.size());
     RobotBody& body = robot_.bodies.emplace_back();
     body.place = element.place();
-    body.name = values.text("name", fmt::format("body{}", index));
+    body.name = values.text("name");
+    if (body.name.empty()) body.name = unusedName(fmt::format("body{}", index));
     body.parent = around.body;
     body.X_PB = around.X_BR * values.pose(reading_.compiler());
     body.is_driven = values.boolean("mocap", false);
@@ -73,8 +89,12 @@ class BodyReader {
   RobotJoint freeJoint(const XmlElement& element) const {
     RobotJoint joint;
     joint.kind = RobotJointKind::kFree;
-    joint.name = Values(element).text("name");
+    const Values values(element);
+    joint.name = values.text("name");
     joint.place = element.place();
+    constexpr std::string_view kWords[] = {"false", "true", "auto"};  // auto: as the compiler's alignfree, off here
+    if (values.oneOf("align", kWords, 0) == 1)
+      values.reject("align", "isn't known here: frames of free bodies stay as they are drawn.");
     return joint;
   }
 
@@ -88,8 +108,8 @@ class BodyReader {
       element.reject("limits a ball joint, which isn't known here. Make it of three hinges, or leave the range out.");
     if (body.is_driven) element.reject("holds a mocap body, which goes where it is told.");
     if (joint.name.empty())
-      joint.name =
-          body.joints.empty() ? body.name + "_joint" : fmt::format("{}_joint{}", body.name, body.joints.size());
+      joint.name = unusedName(body.joints.empty() ? body.name + "_joint"
+                                                  : fmt::format("{}_joint{}", body.name, body.joints.size()));
     body.joints.push_back(std::move(joint));
   }
 
@@ -107,9 +127,9 @@ class BodyReader {
 
   void readSite(const XmlElement& element, const Surroundings& around) {
     const Values values(reading_.document, element, "site", around.class_index);
-    if (values.has("fromto")) values.reject("fromto", "doesn't go with sites here: give pos and a turn.");
-    const std::string name = values.text("name");
-    if (!name.empty()) robot_.frames.push_back({name, around.body, around.X_BR * values.pose(reading_.compiler())});
+    const Pose X_RS = values.has("fromto") ? readEnds(values).X : values.pose(reading_.compiler());
+    const std::string name = element.find("name") ? values.text("name") : "";
+    if (!name.empty()) robot_.frames.push_back({name, around.body, around.X_BR * X_RS});
   }
 
   void readInertial(const XmlElement& element, const Surroundings& around) {
@@ -168,6 +188,7 @@ class BodyReader {
   Robot& robot_;
   std::vector<bool> given_;                  // by body: inertial stands there
   std::vector<std::vector<RobotGeom>> own_;  // by body: geoms that add mass
+  std::set<std::string> given_names_;        // of all that has one in the world
 };
 
 void scaleMasses(Robot& robot, double wanted) {
@@ -237,6 +258,7 @@ void readBodies(Reading& reading) {
   requireSomethingToMove(reading.robot);
   refuseMovingPlanes(reading.robot);
   scaleMasses(reading.robot, reading.compiler().total_mass);
+  tuneSprings(reading.robot);
   nameJoints(reading);
 }
 

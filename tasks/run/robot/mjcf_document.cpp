@@ -7,6 +7,7 @@
 #include <set>
 
 #include "pincer/tasks/run/files/spelling.h"
+#include "pincer/tasks/run/robot/mjcf_replicate.h"
 #include "pincer/tasks/run/robot/mjcf_values.h"
 
 namespace pincer::tasks::mjcf {
@@ -65,6 +66,11 @@ void readCompilerElement(const XmlElement& element, Compiler& c) {
   const Values values(element);
   constexpr std::string_view kAngles[] = {"radian", "degree"};  // by Compiler::degrees
   c.degrees = values.oneOf("angle", kAngles, c.degrees) == 1;
+  constexpr std::string_view kCoordinates[] = {"local", "global"};
+  if (values.oneOf("coordinate", kCoordinates, 0) == 1)
+    values.reject("coordinate", "isn't known since MuJoCo 2.3.4. Let an older MuJoCo save the file in local ones.");
+  if (values.boolean("alignfree", false))
+    values.reject("alignfree", "isn't known here: frames of free bodies stay as they are drawn.");
   c.autolimits = values.boolean("autolimits", c.autolimits);
   c.balance_inertia = values.boolean("balanceinertia", c.balance_inertia);
   c.strip_path = values.boolean("strippath", c.strip_path);
@@ -154,6 +160,9 @@ Document readDocument(const std::string& path, const std::vector<std::string>& a
   Includer(document.folder, path).expand(document.root);
   checkGrammar({"MJCF", rows(), "default"}, document.root, document.notes);
   for (const XmlElement* element : sections(document, "compiler")) readCompilerElement(*element, document.compiler);
+  for (XmlElement& child : document.root.children) {
+    if (child.tag == "worldbody") writeCopiesOut(document.compiler, child);
+  }
   ClassReader classes(document.classes);
   for (const XmlElement* element : sections(document, "default")) classes.read(*element, -1);
   return document;

@@ -1,7 +1,9 @@
 // Geoms and joints of a body.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "pincer/tasks/run/files/spelling.h"
@@ -36,13 +38,9 @@ void readSize(const Values& values, RobotGeom& geom, bool from_to) {
   }
 }
 
-// From one end to the other: the middle, z from the second end to the first, and the half length.
 void readFromTo(const Values& values, RobotGeom& geom) {
-  const std::vector<double> ends = values.numbers("fromto", 6, 6);
-  const Vec3 from(ends[0], ends[1], ends[2]), to(ends[3], ends[4], ends[5]), way = from - to;
-  if (!(way.norm() > 0)) values.reject("fromto", "has both ends at one place.");
-  geom.X_BG = {Quat::FromTwoVectors(Vec3::UnitZ(), way).normalized(), 0.5 * (from + to)};
-  const double half = 0.5 * way.norm();
+  const auto [X, half] = readEnds(values);
+  geom.X_BG = X;
   switch (geom.shape) {
     case RobotShape::kCapsule:
     case RobotShape::kCylinder:
@@ -65,18 +63,16 @@ int meshNamed(const Reading& reading, const Values& values) {
   values.reject("mesh", fmt::format("is the name of no mesh of <asset>.{}", suggestion(name, names)));
 }
 
-// Of the geoms that touch: sliding, turning about the normal, rolling. Radii are over the sliding one.
-void readFriction(const Values& values, RobotGeom& geom) {
+// The friction that a geom without any would give those that have some: the larger of the two counts.
+double readFriction(const Values& values, RobotGeom& geom) {
   const std::vector<double> friction = values.numbers("friction", 1, 3);
   Vec3 f(1, 0.005, 0.0001);
   for (std::size_t i = 0; i < friction.size(); ++i) f[static_cast<Eigen::Index>(i)] = friction[i];
   if (f.minCoeff() < 0) values.reject("friction", "has a negative coefficient.");
   const int dimensions = values.whole("condim", 3);
-  if (dimensions != 1 && dimensions != 3 && dimensions != 4 && dimensions != 6)
-    values.reject("condim", "is none of 1, 3, 4, 6.");
-  geom.mu = dimensions == 1 ? 0 : f[0];
-  if (geom.mu > 0 && dimensions >= 4) geom.torsion_radius = f[1] / f[0];
-  if (geom.mu > 0 && dimensions == 6) geom.rolling_radius = f[2] / f[0];
+  requireDimensions(values, dimensions);
+  geom.friction = frictionOf(dimensions, f);
+  return dimensions == 1 ? f[0] : 0;
 }
 
 void readMass(const Reading& reading, const Values& values, RobotGeom& geom) {
@@ -106,6 +102,25 @@ double positiveOrZero(const Values& values, std::string_view name) {
 
 }  // namespace
 
+void requireDimensions(const Values& values, int dimensions) {
+  if (dimensions != 1 && dimensions != 3 && dimensions != 4 && dimensions != 6)
+    values.reject("condim", "is none of 1, 3, 4, 6.");
+}
+
+RobotFriction frictionOf(int dimensions, const Vec3& f) {
+  RobotFriction friction{dimensions == 1 ? 0 : f[0], 0, 0};
+  if (friction.mu > 0 && dimensions >= 4) friction.torsion_radius = f[1] / f[0];
+  if (friction.mu > 0 && dimensions == 6) friction.rolling_radius = f[2] / f[0];
+  return friction;
+}
+
+Ends readEnds(const Values& values) {
+  const std::vector<double> ends = values.numbers("fromto", 6, 6);
+  const Vec3 from(ends[0], ends[1], ends[2]), to(ends[3], ends[4], ends[5]), way = from - to;
+  if (!(way.norm() > 0)) values.reject("fromto", "has both ends at one place.");
+  return {{Quat::FromTwoVectors(Vec3::UnitZ(), way).normalized(), 0.5 * (from + to)}, 0.5 * way.norm()};
+}
+
 RobotGeom readGeom(Reading& reading, const Values& values, const Pose& X_BR) {
   RobotGeom geom;
   geom.place = values.element().place();
@@ -123,12 +138,30 @@ RobotGeom readGeom(Reading& reading, const Values& values, const Pose& X_BR) {
   geom.X_BG = values.pose(reading.compiler());
   if (from_to) readFromTo(values, geom);
   geom.X_BG = X_BR * geom.X_BG;
-  readFriction(values, geom);
+  const double unused_friction = readFriction(values, geom);
   geom.contype = values.whole("contype", 1);
   geom.conaffinity = values.whole("conaffinity", 1);
+  if (unused_friction > 0 && !geom.isOnlySeen()) reading.frictionless.emplace_back(unused_friction, geom.place);
   geom.priority = values.whole("priority", 0);
   readMass(reading, values, geom);
   return geom;
+}
+
+void noteFrictionless(const Reading& reading) {
+  const Robot& robot = reading.robot;
+  double least = std::numeric_limits<double>::infinity();
+  const auto collect = [&](const std::vector<RobotGeom>& geoms) {
+    for (const RobotGeom& geom : geoms) {
+      if (geom.friction.mu > 0 && !geom.isOnlySeen()) least = std::min(least, geom.friction.mu);
+    }
+  };
+  for (const RobotBody& body : robot.bodies) collect(body.geoms);
+  collect(robot.world_geoms);
+  for (const auto& [friction, place] : reading.frictionless) {
+    if (friction > least)
+      reading.document.notes.add("geom friction beside condim 1", "Those that it touches have their own friction.",
+                                 place);
+  }
 }
 
 bool addsMass(const Reading& reading, const Values& values) {
@@ -156,6 +189,11 @@ RobotJoint readJoint(Reading& reading, const Values& values, const Pose& X_BR) {
   joint.damping = readConstant(values, "damping");
   joint.friction = positiveOrZero(values, "frictionloss");
   joint.armature = positiveOrZero(values, "armature");
+  const std::vector<double> spring = values.numbers("springdamper", 2, 2);
+  if (!spring.empty()) joint.spring_damper = Vec2(spring[0], spring[1]);
+  const bool has_axis = joint.kind == RobotJointKind::kHinge || joint.kind == RobotJointKind::kSlide;
+  if (joint.spring_damper.minCoeff() > 0 && !has_axis)
+    values.reject("springdamper", "goes with hinges and slides here.");
   joint.drive_forces = values.limits("actuatorfrcrange", "actuatorfrclimited", compiler.autolimits);
   return joint;
 }

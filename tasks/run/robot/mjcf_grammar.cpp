@@ -26,9 +26,9 @@ constexpr std::array kRows = {
     GrammarRow{"compiler", "compiler", "mujoco", kRead,
                "autolimits boundmass boundinertia settotalmass balanceinertia strippath angle eulerseq meshdir "
                "assetdir inertiafromgeom "
-               "inertiagrouprange",
-               "texturedir discardvisual usethread fusestatic saveinertial conflict", "alignfree", "coordinate fitaabb",
-               "Positions are local since MuJoCo 2.3.4, and geoms aren't fitted to meshes here."},
+               "inertiagrouprange alignfree coordinate",
+               "texturedir discardvisual usethread fusestatic saveinertial conflict", "", "fitaabb",
+               "Geoms aren't fitted to meshes here."},
     GrammarRow{"lengthrange", "lengthrange", "compiler", kLooks},
     GrammarRow{"option", "option", "mujoco", kRead, "timestep gravity", "",
                "impratio tolerance ls_tolerance noslip_tolerance ccd_tolerance sleep_tolerance wind magnetic density "
@@ -67,15 +67,14 @@ constexpr std::array kRows = {
     GrammarRow{"body", "body", kBodies, kRead, "name childclass pos quat axisangle xyaxes zaxis euler mocap gravcomp",
                "user simple", "sleep"},
     GrammarRow{"frame", "frame", kBodies, kRead, "name childclass pos quat axisangle xyaxes zaxis euler"},
-    GrammarRow{"replicate", "replicate", kBodies, kRefused, "", "", "", "", "Write the copies out."},
+    GrammarRow{"replicate", "replicate", kBodies, kRead, "count offset euler sep childclass"},
     GrammarRow{"inertial", "inertial", "body frame replicate", kRead,
                "pos quat mass diaginertia axisangle xyaxes zaxis euler fullinertia"},
     GrammarRow{"joint", "joint", "body frame replicate default", kRead,
                "name class type pos axis limited actuatorfrclimited stiffness range actuatorfrcrange ref springref "
-               "armature damping frictionloss",
-               "group user", "solreflimit solimplimit solreffriction solimpfriction actuatorgravcomp margin",
-               "springdamper", "Give stiffness and damping."},
-    GrammarRow{"freejoint", "freejoint", "body frame", kRead, "name", "group", "align"},
+               "armature damping frictionloss springdamper",
+               "group user", "solreflimit solimplimit solreffriction solimpfriction actuatorgravcomp margin"},
+    GrammarRow{"freejoint", "freejoint", "body frame", kRead, "name align", "group"},
     GrammarRow{"geom", "geom", kBodiesAndDefault, kRead,
                "name class type contype conaffinity condim group priority size friction mass density shellinertia "
                "fromto pos quat axisangle "

@@ -22,8 +22,7 @@ bool isActive(const Reading& reading, const XmlElement& element) {
 }
 
 void readContact(Reading& reading, const XmlElement& element) {
-  if (element.tag == "pair")
-    element.reject("gives two geoms a contact of their own, which isn't known yet: give the geoms their friction.");
+  if (element.tag == "pair") return readPair(reading, element);
   const Values values(element);
   reading.robot.excluded.push_back(
       {bodyNamed(reading, values, "body1"), bodyNamed(reading, values, "body2"), element.place()});

@@ -35,6 +35,13 @@ struct RobotMesh {
   Place place;
 };
 
+// Friction of a geom, or of two.
+struct RobotFriction {
+  double mu = 1, torsion_radius = 0, rolling_radius = 0;  // [-], [m], [m]
+
+  bool operator==(const RobotFriction&) const = default;
+};
+
 struct RobotGeom {
   std::string name;
   RobotShape shape = RobotShape::kSphere;
@@ -42,13 +49,18 @@ struct RobotGeom {
   Vec3 half = Vec3::Zero();
   int mesh = -1;  // of Robot::meshes
   Pose X_BG;
-  double mu = 1, torsion_radius = 0, rolling_radius = 0;  // friction [-], [m], [m]
+  RobotFriction friction;
   int contype = 1, conaffinity = 1, priority = 0;
   double mass = 0;  // [kg]
   Place place;
 
   bool isOnlySeen() const { return contype == 0 && conaffinity == 0; }
 };
+
+// True if either of the two is something that the other touches.
+inline bool canTouch(const RobotGeom& a, const RobotGeom& b) {
+  return (a.contype & b.conaffinity) != 0 || (b.contype & a.conaffinity) != 0;
+}
 
 enum class RobotJointKind { kHinge, kSlide, kBall, kFree };
 
@@ -62,6 +74,8 @@ struct RobotJoint {
   double damping = 0;                     // [N m s/rad, N s/m]
   double friction = 0;                    // dry [N m, N]
   double armature = 0;                    // [kg m^2, kg]
+  Vec2 spring_damper = Vec2::Zero();      // time constant [s] and damping ratio; where both aren't 0, what the joint's
+                                          // stiffness and damping are made from
   std::optional<Vec2> drive_forces;       // of all drives together [N m, N]
   Place place;
 };
@@ -127,6 +141,17 @@ struct RobotExclusion {
   Place place;
 };
 
+struct RobotGeomIndex {
+  int body = -1, geom = 0;  // of that body's, or of the world's
+};
+
+// Two geoms that touch, and their friction for each other where they have one of their own.
+struct RobotPair {
+  RobotGeomIndex a, b;
+  std::optional<RobotFriction> friction;
+  Place place;
+};
+
 struct RobotKeyframe {
   std::string name;
   double time = 0;
@@ -142,6 +167,7 @@ struct Robot {
   std::vector<RobotGeom> world_geoms;  // fixed to the world
   std::vector<RobotFrame> frames;      // body -1: fixed to the world
   std::vector<RobotExclusion> excluded;
+  std::vector<RobotPair> pairs;
   std::vector<RobotCoupling> couplings;
   std::vector<RobotLoop> loops;
   std::vector<RobotTendon> tendons;

@@ -39,8 +39,13 @@ class Checker {
   }
 
  private:
+  bool isExtension(const std::string& name) const {
+    return grammar_.has_extensions && name.find(':') != std::string::npos;
+  }
+
   void checkAttribute(const XmlElement& element, const std::string& name, const GrammarRow& row) {
     if (name.rfind("xmlns", 0) == 0) return;  // XML's own
+    if (isExtension(name)) return notes_.add(fmt::format("{} {}", element.tag, name), "", element.place());
     Verdict verdict;
     if (!findAttribute(row, name, verdict)) {
       element.reject(fmt::format("has the attribute \"{}\", which {} doesn't know there.{}", name, grammar_.format,
@@ -56,6 +61,7 @@ class Checker {
   void checkChild(const XmlElement& child, const GrammarRow& row) {
     const GrammarRow* found = findRow(grammar_.rows, row.name, child.tag);
     if (!found) {
+      if (isExtension(child.tag)) return notes_.add(child.tag, "", child.place());
       child.reject(fmt::format("isn't an element that {} knows within <{}>.{}", grammar_.format, row.tag,
                                suggestion(child.tag, tagsWithin(row))));
     }

@@ -32,6 +32,7 @@ struct RobotGrammar {
   std::string_view format;             // "MJCF"
   std::span<const GrammarRow> rows;    // the root's has no parents
   std::string_view defaults_row = {};  // within it what is refused has no effect before an element uses it
+  bool has_extensions = false;         // names with a prefix, as in "drake:joint", are what other programs add: ignored
 };
 
 // Null where the grammar has no such element in such a place; `parent_row` is empty for the root.

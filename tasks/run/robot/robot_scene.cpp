@@ -80,10 +80,7 @@ void writeGeom(const RobotGeom& geom, const Pose& X, const std::vector<RobotMesh
   json.beginObject().key("shape");
   writeRobotShape(geom, X, meshes, json);
   if (geom.shape != RobotShape::kPlane) writePose(X, json);
-  json.key("material").beginObject().key("mu_s").value(geom.mu);
-  if (geom.torsion_radius > 0) json.key("torsion_radius").value(geom.torsion_radius);
-  if (geom.rolling_radius > 0) json.key("rolling_radius").value(geom.rolling_radius);
-  json.endObject();
+  writeFriction(geom.friction, json);
   json.key("collides")
       .beginObject()
       .key("as")
@@ -315,51 +312,6 @@ void writeFrames(SceneWriting& w) {
   }
   for (int i = 0; i < static_cast<int>(w.posed.robot.bodies.size()); ++i) {
     if (w.posed.carrier(i) != i) writeFrame(w, w.bodyName(i), i, {});
-  }
-  w.json.endArray();
-}
-
-// Names of two bodies that don't touch.
-using Apart = std::set<std::pair<std::string, std::string>>;
-
-void addApart(const std::string& a, const std::string& b, Apart& apart) {
-  if (a != b) apart.insert(std::minmax(a, b));
-}
-
-// The name of a body's link, empty of a world without geoms. Only links can be kept
-// apart: what else of the link touches is noted.
-std::string linkName(SceneWriting& w, const RobotExclusion& exclusion, int body) {
-  if (body < 0) return w.posed.robot.world_geoms.empty() ? "" : w.names.of("world", "world");
-  const RobotLink& link = w.posed.links[static_cast<std::size_t>(w.posed.link_of[static_cast<std::size_t>(body)])];
-  const std::vector<RobotGeom>& own = w.posed.body(body).geoms;
-  const auto isOwn = [&](const RobotGeom* geom) {
-    return std::any_of(own.begin(), own.end(), [&](const RobotGeom& g) { return &g == geom; });
-  };
-  const bool is_part = std::any_of(link.geoms.begin(), link.geoms.end(),
-                                   [&](const auto& g) { return !g.first->isOnlySeen() && !isOwn(g.first); });
-  if (is_part) w.notes.add("exclude of a part", "All that is fixed to it is kept apart, too.", exclusion.place);
-  return w.bodyName(link.body);
-}
-
-// A body of several joints doesn't touch the body that carries it, as those of one joint don't.
-void addCarried(SceneWriting& w, Apart& apart) {
-  for (const RobotLink& link : w.posed.links) {
-    const RobotBody& body = w.posed.body(link.body);
-    if (body.joints.size() > 1 && body.parent >= 0)
-      addApart(w.bodyName(link.body), w.bodyName(w.posed.carrier(body.parent)), apart);
-  }
-}
-
-void writePairs(SceneWriting& w) {
-  Apart apart;
-  for (const RobotExclusion& exclusion : w.posed.robot.excluded) {
-    const std::string a = linkName(w, exclusion, exclusion.a), b = linkName(w, exclusion, exclusion.b);
-    if (!a.empty() && !b.empty()) addApart(a, b, apart);
-  }
-  addCarried(w, apart);
-  w.json.key("pairs").beginArray();
-  for (const auto& [a, b] : apart) {
-    w.json.beginObject().key("bodies").beginArray().value(a).value(b).endArray().key("touch").value(false).endObject();
   }
   w.json.endArray();
 }

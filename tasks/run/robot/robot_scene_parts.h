@@ -22,6 +22,12 @@ struct SceneWriting {
 // True if a drive moves this joint alone, and nothing else drives it: then the joint's range of forces is the drive's.
 bool isOnlyDriveOf(const Robot& robot, const RobotJoint& joint);
 
+// "material" of a part or of a pair.
+void writeFriction(const RobotFriction& friction, JsonWriter& json);
+
+// "pairs". Throws InputError at a pair whose friction can't be that of two bodies.
+void writePairs(SceneWriting& writing);
+
 // "couplings", "tendons", "drives".
 void writeTies(SceneWriting& writing);
 

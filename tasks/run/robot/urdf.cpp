@@ -237,7 +237,7 @@ RobotImport readUrdf(const std::string& path, const std::vector<std::string>& al
   if (root.tag != "robot") root.reject("isn't <robot>: this is no URDF file. MJCF files end in .xml.");
   urdf::refuseXacro(root, path);
   RobotImport result;
-  checkGrammar({"URDF", urdf::rows()}, root, result.notes);
+  checkGrammar({"URDF", urdf::rows(), {}, true}, root, result.notes);
   Robot& robot = result.robot;
   robot.name = XmlValues(root).text("name", std::filesystem::path(path).stem().string());
   robot.file = path;

@@ -42,7 +42,7 @@ constexpr std::array kRows = {
     GrammarRow{"sphere", "sphere", "geometry", kRead, "radius"},
     GrammarRow{"mesh", "mesh", "geometry", kRead, "filename scale"},
     GrammarRow{"plane", "plane", "geometry", kRefused, "", "", "", "", kSolid},
-    GrammarRow{"joint", "joint", "robot", kRead, "name type"},
+    GrammarRow{"joint", "joint", "robot", kRead, "name type", "", "dont_collapse"},
     GrammarRow{"parent", "parent", "joint", kRead, "link"},
     GrammarRow{"child", "child", "joint", kRead, "link"},
     GrammarRow{"axis", "axis", "joint", kRead, "xyz"},

@@ -68,16 +68,19 @@ std::string sceneText(const std::string& path_or_name) {
   return std::string(builtinNamed(path_or_name).json);
 }
 
-Scene readSceneOrBuiltin(const std::string& path_or_name) {
+Scene readSceneOrBuiltin(const std::string& path_or_name, const RobotFileOptions& options) {
   if (isRobotFile(path_or_name)) {
     std::string remarks;
     const std::string name = path_or_name + " (as a scene)";
-    Scene scene = sceneOf(parseJson(robotSceneText(path_or_name, remarks), name), name);
+    Scene scene = sceneOf(parseJson(robotSceneText(path_or_name, remarks, options), name), name);
     scene.remarks = remarks;
     return scene;
   }
+  if (!options.keyframe.empty())
+    throw InputError(fmt::format("{}: --keyframe goes with a robot's own file. A scene names it: \"keyframe\": \"{}\".",
+                                 path_or_name, options.keyframe));
   const NamedJson scene = parseSceneOrBuiltin(path_or_name);
-  return sceneOf(scene.json, scene.name);
+  return sceneOf(scene.json, scene.name, options);
 }
 
 }  // namespace pincer::tasks

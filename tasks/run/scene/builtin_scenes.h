@@ -27,8 +27,8 @@ std::span<const BuiltinScene> builtinScenes();
 Scene readBuiltinScene(std::string_view name);
 
 // The path of a scene or robot (.xml), or the name of a built-in scene: what a user gives to `sim` and `plan`. A
-// file of that path wins. Throws InputError.
-Scene readSceneOrBuiltin(const std::string& path_or_name);
+// file of that path wins. Throws InputError; also where a keyframe is named, and it is no robot's file.
+Scene readSceneOrBuiltin(const std::string& path_or_name, const RobotFileOptions& options = {});
 
 // The same, not yet read (sceneOf), and what it is called in messages.
 NamedJson parseSceneOrBuiltin(const std::string& path_or_name);

@@ -120,12 +120,12 @@ void tellDrives(const JsonValue& json, const std::string& prefix, Scene& scene) 
 }
 
 // Its bodies, joints and drives; in messages all of them stand where the robot is named.
-void addRobot(const JsonValue& json, SceneNames& names, Scene& scene) {
+void addRobot(const JsonValue& json, const RobotFileOptions& options, SceneNames& names, Scene& scene) {
   const std::array lines = {&scene.body_lines, &scene.joint_lines, &scene.coupling_lines, &scene.drive_lines,
                             &scene.pair_lines};
   std::array<std::ptrdiff_t, lines.size()> before;
   for (std::size_t i = 0; i < lines.size(); ++i) before[i] = std::ssize(*lines[i]);
-  const RobotJson robot = readRobot(json, scene);
+  const RobotJson robot = readRobot(json, options, scene);
   try {
     readBodies(robot.json, names, scene);
   } catch (const InputError& error) {
@@ -148,7 +148,9 @@ void readFingers(const JsonValue& json, SceneNames& names, Scene& scene) {
 
 }  // namespace
 
-Scene sceneOf(const JsonValue& json, const std::string& name) {
+Scene sceneOf(const JsonValue& json, const std::string& name) { return sceneOf(json, name, RobotFileOptions{}); }
+
+Scene sceneOf(const JsonValue& json, const std::string& name, const RobotFileOptions& options) {
   json.allowOnly(keys::kScene);
   checkVersion(json);
   Scene scene;
@@ -161,7 +163,7 @@ Scene sceneOf(const JsonValue& json, const std::string& name) {
     scene.options.combination = static_cast<engine::Combination>(v->oneOf(keys::kCombinations));
   SceneNames names;
   if (const JsonValue* v = json.find("robots")) {
-    for (const JsonValue& robot : listOf(*v, kMostRobots)) addRobot(robot, names, scene);
+    for (const JsonValue& robot : listOf(*v, kMostRobots)) addRobot(robot, options, names, scene);
   }
   readBodies(json, names, scene);
   if (const JsonValue* v = json.find("fingers")) readFingers(*v, names, scene);

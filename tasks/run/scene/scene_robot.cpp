@@ -10,8 +10,9 @@
 namespace pincer::tasks {
 namespace {
 
-std::string sceneText(const std::string& path, const RobotSceneOptions& options, std::string& remarks) {
-  RobotImport import = readRobotFile(path);
+std::string sceneText(const std::string& path, const RobotSceneOptions& options,
+                      const std::vector<std::string>& allowed_folders, std::string& remarks) {
+  RobotImport import = readRobotFile(path, allowed_folders);
   const std::string text = sceneOfRobot(import.robot, options, import.notes);
   if (!import.notes.all().empty()) remarks += importText(import);
   return text;
@@ -19,9 +20,13 @@ std::string sceneText(const std::string& path, const RobotSceneOptions& options,
 
 }  // namespace
 
-std::string robotSceneText(const std::string& path, std::string& remarks) { return sceneText(path, {}, remarks); }
+std::string robotSceneText(const std::string& path, std::string& remarks, const RobotFileOptions& options) {
+  RobotSceneOptions scene_options;
+  scene_options.keyframe = options.keyframe;
+  return sceneText(path, scene_options, options.allowed_folders, remarks);
+}
 
-RobotJson readRobot(const JsonValue& json, Scene& scene) {
+RobotJson readRobot(const JsonValue& json, const RobotFileOptions& file_options, Scene& scene) {
   json.allowOnly(keys::kRobot);
   RobotSceneOptions options;
   if (const JsonValue* v = json.find("name")) {
@@ -38,7 +43,8 @@ RobotJson readRobot(const JsonValue& json, Scene& scene) {
   const JsonValue& file = json.at("file", "The robot's MJCF or URDF file, relative to the scene's folder.");
   const std::string path = besideScene(scene.file, file.text());
   try {
-    return {options.prefix, parseJson(sceneText(path, options, scene.remarks), path + " (as a scene)")};
+    return {options.prefix,
+            parseJson(sceneText(path, options, file_options.allowed_folders, scene.remarks), path + " (as a scene)")};
   } catch (const InputError& error) {
     file.reject(fmt::format("can't be used: {}", error.what()));
   }

@@ -296,6 +296,19 @@ TEST_F(UrdfReader, WhatHasNoEffectIsCountedByName) {
                                           "gazebo mu2", "transmission type", "origin rpy above a turn"}));
 }
 
+// Drake's, for one; and a remark to simulators that merge fixed links.
+TEST_F(UrdfReader, WhatOtherProgramsAddIsCountedByName) {
+  const ImportNotes notes =
+      read(
+          "<drake:collision_filter_group name=\"g\"/>" + link("a") + link("b", "<drake:x/>") +
+          R"(<joint name="j" type="fixed" dont_collapse="true" drake:y="1"><parent link="a"/><child link="b"/></joint>)")
+          .notes;
+  std::set<std::string> names;
+  for (const ImportNote& note : notes.all()) names.insert(note.what);
+  EXPECT_EQ(names,
+            (std::set<std::string>{"drake:collision_filter_group", "drake:x", "joint dont_collapse", "joint drake:y"}));
+}
+
 // A terminal may obey bytes above 127, too: they begin commands in some.
 TEST_F(UrdfReader, NamesOfIgnoredPartsDontReachTheTerminalAsTheyAre) {
   const std::string text = importText(read(link("base") + "<gazebo><a\x9b/></gazebo>"));
