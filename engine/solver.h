@@ -22,8 +22,7 @@ struct SolverOptions {
   // be off while they move [m/s], 0 .. 1; 0: to the tolerance. Fewer contacts, and what is about to
   // rest, are always solved to the tolerance.
   double accuracy = 1e-6;
-  // By how much contacts that contradict each other may give way, see SolveResult [m/s]: up to the accuracy as soon as
-  // Newton's method has no answer, beyond it once an interior point has none either.
+  // By how much contacts that contradict each other may give way, see SolveResult [m/s].
   double largest_give = 0;
   bool thorough = true;  // of up to sixty contacts: whether the costlier methods are tried after Newton's
   // Most that the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted in

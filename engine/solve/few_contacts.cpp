@@ -4,6 +4,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/contact_equations.h"
+#include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/interior_point.h"
 #include "pincer/engine/solve/newton.h"
 #include "pincer/engine/solve/point_problem.h"
@@ -74,12 +75,14 @@ class FewSearch {
         iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
     keepBest();
     const bool is_squeezed = isSqueezedNow();
-    const double give = is_squeezed ? options.largest_give : std::min(options.accuracy, options.largest_give);
-    if ((isEnough(options) && !is_squeezed) || giveWay(give, options)) return SolveMethod::kNewton;
+    if (isEnough(options) && !is_squeezed) return SolveMethod::kNewton;
+    // Few contacts try the interior first: what is pinched would creep.
+    const bool gives_first = is_squeezed || problem_.contactCount() >= kManyContacts;
+    if (gives_first && giveWay(options)) return SolveMethod::kNewton;
     if (!options.thorough || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
     iterations_ +=
         followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
-    if (finish(options) || giveWay(options.largest_give, options)) return SolveMethod::kInteriorPoint;
+    if (finish(options) || giveWay(options)) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
     if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
     scaleSides(unscaled_, scratch_);
@@ -155,16 +158,16 @@ class FewSearch {
     return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
   }
 
-  // True if contacts that contradict each other have an answer if they give way by at most `largest` [m/s].
-  bool giveWay(double largest, const SolverOptions& options) {
-    if (!(largest > 0)) return false;
+  // True if contacts that contradict each other have an answer if they give way a little.
+  bool giveWay(const SolverOptions& options) {
+    if (!(options.largest_give > 0)) return false;
     restartFromBest();
     if (isSqueezedNow()) std::fill(current_.r, current_.r + problem_.rowCount(), 0.0);
     evaluate(problem_, current_);
-    double give = largest;
+    double give = options.largest_give;
     iterations_ +=
         iterateGiving(problem_, 0.5 * options.tolerance, kGivingRounds, equations_, scratch_, current_, trial_, give);
-    if (!(give <= largest)) return false;
+    if (!(give <= options.largest_give)) return false;
     give_ = give;
     best_.residual = std::numeric_limits<double>::infinity();
     keepBest();

@@ -90,15 +90,17 @@ class IslandSolve {
   }
 
   // The gaps of a loop of bodies are fitted to the contacts that pushed in the last tick, once more to the impulses
-  // found if that fails; then contacts give way.
+  // found if that fails; then contacts give way: few of them, which may pinch, by no more than the accuracy if that will
+  // do.
   void solveLoop() {
     if (!fitToTurnOfTrees()) fit(PushingBy::kLastTick);
-    if (island_.contacts > kFewContacts) return solve(giving());
+    if (island_.contacts > kFewContacts) return solve(giving(kLargestGive));
     solve(quick());
     if (island_.result.converged) return;
     fit(PushingBy::kImpulses);
-    solveAgain(giving());
-    if (island_.contacts < kManyContacts && !island_.result.converged) solveAgain(options_);
+    const bool is_small = island_.contacts < kManyContacts;
+    solveAgain(giving(is_small ? std::min(options_.accuracy, kLargestGive) : kLargestGive));
+    if (is_small && !island_.result.converged) solveAgain(giving(kLargestGive));
     if (pushesInVain()) solveWithoutPushes();
   }
 
@@ -111,7 +113,7 @@ class IslandSolve {
     if (may_jam && !isAnswered()) solveAgain(options_);
     if (isAnswered() || !(scratch_.h > 0) || memory_.operations_left < 0) return;
     fit(PushingBy::kImpulses);
-    solveAgain(giving());
+    solveAgain(giving(kLargestGive));
   }
 
   SolverOptions quick() const {
@@ -119,9 +121,9 @@ class IslandSolve {
     options.thorough = false;
     return options;
   }
-  SolverOptions giving() const {
+  SolverOptions giving(double largest) const {
     SolverOptions options = options_;
-    options.largest_give = kLargestGive;
+    options.largest_give = largest;
     return options;
   }
   bool isAnswered() const { return island_.result.converged || island_.result.yields; }
