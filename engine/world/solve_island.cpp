@@ -90,8 +90,8 @@ class IslandSolve {
   }
 
   // The gaps of a loop of bodies are fitted to the contacts that pushed in the last tick, once more to the impulses
-  // found if that fails; then contacts give way: few of them, which may pinch, by no more than the accuracy if that will
-  // do.
+  // found if that fails; then contacts give way. Few of them may pinch: they do so by more than the accuracy only
+  // where nothing else is left.
   void solveLoop() {
     if (!fitToTurnOfTrees()) fit(PushingBy::kLastTick);
     if (island_.contacts > kFewContacts) return solve(giving(kLargestGive));
