@@ -18,9 +18,9 @@ using FingersContacts = std::span<const engine::Contact>;
 void reportFinger(const GraspModel& model, const GraspState& state, int finger, FingersContacts contacts,
                   GraspScratch& scratch);
 
-// Those of `finger` and, sorted, of all behind it.
+// Contacts of `finger` and, sorted, of all behind it.
 FingersContacts contactsFrom(const GraspScratch& scratch, int finger);
-// Those of `finger`, with which `sorted` begins if it has any.
+// Contacts of `finger`, with which `sorted` begins if it has any.
 FingersContacts firstOf(FingersContacts sorted, int finger);
 
 // Fills FingerReport::pressure of a finger that has taxels, from its report and its contacts.
