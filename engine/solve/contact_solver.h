@@ -37,9 +37,6 @@
 
 namespace pincer::engine {
 
-// Fewer are always solved to the tolerance: bodies that are pinched must not creep.
-constexpr int kManyContacts = 12;
-
 // A contact that moves slower than this, of more than kFewContacts, is at rest [m/s]: with
 // the default accuracy a millimetre in a day.
 inline double restErrorOf(const SolverOptions& options) { return 0.01 * options.accuracy; }

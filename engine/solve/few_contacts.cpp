@@ -4,7 +4,6 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/contact_equations.h"
-#include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/interior_point.h"
 #include "pincer/engine/solve/newton.h"
 #include "pincer/engine/solve/point_problem.h"

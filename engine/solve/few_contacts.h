@@ -15,6 +15,9 @@
 namespace pincer::engine {
 
 struct SolverScratch;
+// Fewer are always solved to the tolerance: bodies that are pinched must not creep. They give way only once the
+// interior point has failed, others before it.
+constexpr int kManyContacts = 12;
 constexpr int kFewContacts = 60;    // beyond, what needs many factorisations costs milliseconds
 constexpr int kDenseContacts = 40;  // beyond, a dense matrix costs more than any graph of movers that fits
 
