@@ -27,11 +27,9 @@ double cornerSpeed(const BodyModel& body, const BodyScratch& s) {
   return body.corner_reach > 0 ? body.corner_reach * s.start.w_W.norm() : 0;
 }
 
-// Of the first contact that the two shapes had in the last tick; zero if they
-// had none, or for spheres, which need none.
-Vec3 lastNormal(const WorldModel& model, const WorldState& state, const ColliderModel& a, const ColliderModel& b) {
-  if (isSphere(a) || isSphere(b)) return Vec3::Zero();
-  const std::uint64_t first = contactId(model.shape_bits, sideOf(model, a), sideOf(model, b), 0);
+// Of the first contact that two shapes had in the last tick, whose contacts are numbered from `first` on; zero if they
+// had none.
+Vec3 lastNormal(const WorldState& state, std::uint64_t first) {
   const auto end = state.contacts.begin() + state.contact_count;
   const auto less = [](const ContactMemory& m, std::uint64_t id) { return m.id < id; };
   const auto found = std::lower_bound(state.contacts.begin(), end, first, less);
@@ -54,6 +52,24 @@ void addPoints(const WorldModel& model, const ColliderModel& a, const ColliderMo
   }
 }
 
+// Of shapes at these places, but for the last normal, which is looked up. Spheres need none, and are asked for sooner
+// than remembered.
+const contact::PairPoints& pointsOf(const WorldModel& model, const WorldState& state, const ColliderModel& a,
+                                    const ColliderModel& b, PairPlace place, contact::PairPoints& found,
+                                    WorldScratch& scratch) {
+  const auto collide = [&](contact::PairPoints& points) {
+    contact::collideShapes(a.shape, place.X_WA, b.shape, place.X_WB, place.margin, scratch.patches, points,
+                           place.last_n_W);
+  };
+  if (isSphere(a) || isSphere(b)) {
+    collide(found);
+    return found;
+  }
+  const std::uint64_t first = contactId(model.shape_bits, sideOf(model, a), sideOf(model, b), 0);
+  place.last_n_W = lastNormal(state, first);
+  return scratch.found_pairs.pointsOf(first, place, collide);
+}
+
 // material  of the pair, null where it is combined once two shapes touch;   found  working memory
 void collidePair(const WorldModel& model, const WorldState& state, const BodyPair& pair, const Material* material,
                  double h, contact::PairPoints& found, WorldScratch& scratch) {
@@ -71,9 +87,8 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   noteFastPair(model, pair.a, pair.b, scratch);
   const auto collide = [&](const ColliderModel& ca, const Pose& X_WA, const ColliderModel& cb, const Pose& X_WB) {
     chargeQuery(ca, cb, scratch);
-    contact::collideShapes(ca.shape, X_WA, cb.shape, X_WB, margin, scratch.patches, found,
-                           lastNormal(model, state, ca, cb));
-    if (found.count > 0) addPoints(model, ca, cb, material ? *material : materialOf(model, ca, cb), found, scratch);
+    const contact::PairPoints& points = pointsOf(model, state, ca, cb, {X_WA, X_WB, margin}, found, scratch);
+    if (points.count > 0) addPoints(model, ca, cb, material ? *material : materialOf(model, ca, cb), points, scratch);
   };
   const std::size_t first = scratch.contacts.size();
   forEachNearShapes(model, a, sa.X_WB_mid, b, sb.X_WB_mid, margin, collide);

@@ -4,6 +4,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/axis_form.h"
+#include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/most_numbered.h"
 
@@ -44,6 +45,14 @@ bool fitTheTick(const WorldModel& model) {
   return true;
 }
 
+// Pairs of shapes to remember: some touching pairs per shape, with room so that few share a place.
+int pairsFor(const WorldModel& model) {
+  constexpr std::ptrdiff_t kPerShape = 16, kMost = 1 << 16;
+  const auto is_remembered = [](const ColliderModel& collider) { return !isSphere(collider); };
+  const auto shapes = std::count_if(model.colliders.begin(), model.colliders.end(), is_remembered);
+  return static_cast<int>(std::min(kPerShape * shapes, kMost));
+}
+
 }  // namespace
 
 WorldSleep::WorldSleep(const WorldModel& model)
@@ -60,7 +69,7 @@ WorldSleep::WorldSleep(const WorldModel& model)
 }
 
 WorldScratch::WorldScratch(const WorldModel& model)
-    : h(model.options.h), patches(patchesFor(model)), islands(model), sleep(model) {
+    : h(model.options.h), patches(patchesFor(model)), found_pairs(pairsFor(model)), islands(model), sleep(model) {
   PINCER_DEMAND(fitTheTick(model),
                 "WorldScratch: options.h isn't the tick that the model was built for; build it again (WorldBuilder)");
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);

@@ -13,6 +13,7 @@
 #include "pincer/engine/step.h"
 #include "pincer/engine/world/broad_phase.h"
 #include "pincer/engine/world/contact.h"
+#include "pincer/engine/world/found_pairs.h"
 #include "pincer/engine/world/islands.h"
 #include "pincer/engine/world/stage_clock.h"
 #include "pincer/engine/world/tree_scratch.h"
@@ -201,6 +202,7 @@ struct WorldScratch {
   std::vector<int> first_row;
   std::vector<double> mu, q, r, u;
   contact::PatchCache patches;
+  FoundPairs found_pairs;
   IslandScratch islands;
   std::unique_ptr<BroadPhase> broad_phase;  // null where every pair is looked at
   SolveResult solve;

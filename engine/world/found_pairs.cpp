@@ -1,0 +1,22 @@
+#include "pincer/engine/world/found_pairs.h"
+
+#include <bit>
+#include <cstring>
+
+namespace pincer::engine {
+
+FoundPairs::FoundPairs(int pairs) {
+  if (pairs > 0) bits_ = static_cast<int>(std::bit_width(static_cast<unsigned>(pairs)));
+  entries_.resize(std::size_t{1} << bits_);
+}
+
+bool FoundPairs::isSame(const std::array<double, 18>& a, const std::array<double, 18>& b) {
+  return std::memcmp(a.data(), b.data(), sizeof a) == 0;
+}
+
+std::size_t FoundPairs::placeOf(std::uint64_t pair) const {
+  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 over the golden ratio: Knuth, vol. 3, section 6.4
+  return bits_ == 0 ? 0 : static_cast<std::size_t>(pair * kGolden >> (64 - bits_));
+}
+
+}  // namespace pincer::engine

@@ -1,0 +1,60 @@
+// found_pairs: what two shapes touched at when they were looked at last, for as long as both are where they were then,
+// to the bit: what stands still is found without a search. A function's values by its arguments, no more: the answers
+// are the same bits with it and without.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pincer/contact/pair_query.h"
+
+namespace pincer::engine {
+
+// The arguments of contact::collideShapes that change from tick to tick.
+struct PairPlace {
+  Pose X_WA, X_WB;
+  double margin = 0;  // [m]
+  Vec3 last_n_W = Vec3::Zero();
+
+  std::array<double, 18> numbers() const {
+    const Quat &a = X_WA.q, &b = X_WB.q;
+    const Vec3 &p = X_WA.p, &o = X_WB.p, &n = last_n_W;
+    return {p.x(), p.y(), p.z(), a.w(), a.x(), a.y(), a.z(), o.x(), o.y(),
+            o.z(), b.w(), b.x(), b.y(), b.z(), n.x(), n.y(), n.z(), margin};
+  }
+};
+
+class FoundPairs {
+ public:
+  // Memory for some `pairs`; two that share a place forget each other. None for 0.
+  explicit FoundPairs(int pairs);
+
+  // Points of the shapes whose contacts are numbered `pair` (contactId without its feature); find(points) where these
+  // aren't known. Valid until the next call.
+  template <class Find>
+  const contact::PairPoints& pointsOf(std::uint64_t pair, const PairPlace& place, Find find) {
+    Entry& entry = entries_[placeOf(pair)];
+    const std::array<double, 18> numbers = place.numbers();
+    if (entry.pair == pair && isSame(entry.numbers, numbers)) return entry.points;
+    entry.pair = pair;
+    entry.numbers = numbers;
+    find(entry.points);
+    return entry.points;
+  }
+
+ private:
+  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+  struct Entry {
+    std::uint64_t pair = kNone;
+    std::array<double, 18> numbers;
+    contact::PairPoints points;
+  };
+
+  static bool isSame(const std::array<double, 18>& a, const std::array<double, 18>& b);  // by their bits
+  std::size_t placeOf(std::uint64_t pair) const;
+
+  std::vector<Entry> entries_;
+  int bits_ = 0;  // 2^bits_ entries
+};
+
+}  // namespace pincer::engine
