@@ -1,4 +1,4 @@
-// What stands still is found without a search, and nothing else is.
+// Shapes that stand still are found without a search, and nothing else is.
 #include "pincer/engine/world/found_pairs.h"
 
 #include <gtest/gtest.h>
