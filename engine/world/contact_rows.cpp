@@ -75,21 +75,21 @@ double largestCorrection(const WorldModel& model, const Contact& c) {
 double normalBias(const WorldModel& model, const Rates& rates, const WorldScratch& scratch, Contact& c) {
   if (scratch.h == 0) return impactBias(model, scratch, c);
   const ContactMemory* const memory = c.memory;
-  const double u_n = c.v_start_C[kNormalRow];
+  const double u_n = c.v_start_C[kNormalRow], kept = c.offset_C[kNormalRow];
   if (memory && memory->active) {
     const double turn = turnOfNormal(rates, c, *memory);
     // A contact that landed in the last tick still has the speed that it landed with: it is stopped like a new contact.
     if (!memory->closing || rollsOn(u_n, turn) || hasStopped(model, c, u_n, turn))
-      return std::max(rates.normal * (c.phi - c.offset_C[kNormalRow]), -largestCorrection(model, c)) + turn;
+      return std::max(rates.normal * (c.phi - kept), -largestCorrection(model, c)) + turn;
   }
   const double phi_start = c.phi - 0.5 * scratch.h * u_n;
   c.closing = std::abs(u_n) > kClosingSpeed;  // also what hops and comes down within the tick
   const double lands =
-      phi_start > 0 ? phi_start / scratch.h : std::max(rates.normal * phi_start, -largestCorrection(model, c));
+      phi_start > 0 ? phi_start / scratch.h : std::max(rates.normal * (phi_start - kept), -largestCorrection(model, c));
   // A contact that has just left turns away as it did while it touched.
   if (memory && !memory->active)
-    return std::max(lands,
-                    std::max(rates.normal * c.phi, -largestCorrection(model, c)) + turnOfNormal(rates, c, *memory));
+    return std::max(
+        lands, std::max(rates.normal * (c.phi - kept), -largestCorrection(model, c)) + turnOfNormal(rates, c, *memory));
   return lands;
 }
 

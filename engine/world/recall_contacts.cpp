@@ -58,7 +58,8 @@ void recall(Contact& c) {
   withRows(rowsOf(c.material), [&](auto rows) {
     relativeVelocity(c, c.mover_a->start, c.mover_b->start, rows, c.v_start_C.data());
     for (int k = 0; k < rows; ++k) c.offset_C[k] = c.stuck ? memory->offset_C[k] : 0;
-    if (c.offset_C[kNormalRow] < 0) c.offset_C[kNormalRow] = std::clamp(c.phi, c.offset_C[kNormalRow], 0.0);
+    const double overlap = memory ? memory->offset_C[kNormalRow] : 0;
+    c.offset_C[kNormalRow] = overlap < 0 ? std::clamp(c.phi, overlap, 0.0) : 0;
   });
   c.mu = memory && memory->sliding ? slidingFriction(c.material, c.v_start_C.head<2>().norm()) : c.material.mu_s;
   c.open_ticks = memory ? memory->open_ticks : 0;

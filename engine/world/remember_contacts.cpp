@@ -16,6 +16,15 @@ int openTicks(const Contact& c, double hovering) {
   return std::min(c.open_ticks + 1, kOpenTicks);
 }
 
+// True if an overlap of it that was left (solve_island.cpp) is left further: pressed or not, for as long as nothing moves
+// there. Friction that is used up holds a jam as well.
+bool keepsOverlap(const Contact& c) {
+  if (!(c.offset_C[kNormalRow] < 0)) return false;
+  double v_end_C[kMaxContactRows];
+  relativeVelocity(c, c.mover_a->end, c.mover_b->end, kTorsionRow, v_end_C);
+  return Vec3(v_end_C[0], v_end_C[1], v_end_C[kNormalRow]).norm() < kClosingSpeed;
+}
+
 void remember(const Contact& c, double h, double hovering, ContactMemory& m) {
   const int open_ticks = openTicks(c, hovering);
   const bool hovers = open_ticks > 0 && open_ticks < kOpenTicks;
@@ -32,6 +41,7 @@ void remember(const Contact& c, double h, double hovering, ContactMemory& m) {
   m.sliding = c.sliding;
   m.closing = c.closing;
   m.settling = c.settling;
+  if (keepsOverlap(c)) m.offset_C[kNormalRow] = c.offset_C[kNormalRow];
   if (!m.anchored) return;
   if (c.a.kind == SideKind::kJoint && !c.stuck) return;  // its anchor is where it came to rest
   withRows(rowsOf(c.material), [&](auto rows) {
