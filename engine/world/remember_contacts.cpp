@@ -16,8 +16,8 @@ int openTicks(const Contact& c, double hovering) {
   return std::min(c.open_ticks + 1, kOpenTicks);
 }
 
-// True if an overlap of it that was left (solve_island.cpp) is left further: pressed or not, for as long as nothing moves
-// there. Friction that is used up holds a jam as well.
+// True if an overlap of it that was left (solve_island.cpp) is left further: pressed or not, for as long as nothing
+// moves there. Friction that is used up holds a jam as well.
 bool keepsOverlap(const Contact& c) {
   if (!(c.offset_C[kNormalRow] < 0)) return false;
   double v_end_C[kMaxContactRows];

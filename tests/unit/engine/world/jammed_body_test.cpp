@@ -110,8 +110,8 @@ TEST(JammedBody, APegThatTipsIntoItsHoleObeysTheLaw) {
   }
 }
 
-// What touched a wall as deep as its neighbour, but carried nothing, forgot the overlap that was left to it, and asked
-// to be pushed out in every tick: 45 steps until that had failed, 9 to do without.
+// A corner as deep in its wall as its neighbour, but with nothing to carry, forgot the overlap that was left to it, and
+// asked to be pushed out in every tick: 45 steps until that had failed, 9 to do without.
 TEST(JammedBody, APegThatLeansInItsHoleIsntPushedInVainInEveryTick) {
   for (const double play : {3e-4, 4e-4, 5e-4}) {
     Peg peg{8, play, 0.01, 0.03, 0.2, 0.01, 0, 0};
