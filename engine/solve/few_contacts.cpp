@@ -34,8 +34,11 @@ constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the in
 // round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt
 constexpr double kContentSpeed = 1e-8;
 
-double contentResidual(const SolverOptions& options, double reference_speed) {
-  return options.accuracy > 0 ? std::max(kContentSpeed, kContentSpeed / reference_speed) : options.tolerance;
+// slip  the fastest of what pushes [m/s]: in motion an error doesn't show that is a small share of it
+double contentResidual(const SolverOptions& options, double slip, double reference_speed) {
+  if (options.accuracy == 0) return options.tolerance;
+  const double in_motion = std::min(kShareOfSlip * slip, options.accuracy);
+  return std::max(kContentSpeed, std::max(kContentSpeed, in_motion) / reference_speed);
 }
 
 // The iterates of one solve, in scaled variables.
@@ -68,16 +71,13 @@ class FewSearch {
   // Where Newton's method failed.
   SolveMethod goOn(const SolverOptions& options) {
     if (isSpent() || (!(options.largest_give > 0) && isSqueezedNow())) return SolveMethod::kNotConverged;
-    restartFromBest();
-    evaluate(problem_, current_);
-    iterations_ +=
-        iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
-    keepBest();
+    // Few contacts try the interior before they give way: what is pinched would creep. That they may means that they
+    // were tried without, and the rounds with them.
+    const bool is_small = problem_.contactCount() < kManyContacts;
+    if (!is_small || !(options.largest_give > 0)) goOnProximally(options);
     const bool is_squeezed = isSqueezedNow();
     if (isEnough(options) && !is_squeezed) return SolveMethod::kNewton;
-    // Few contacts try the interior first: what is pinched would creep.
-    const bool gives_first = is_squeezed || problem_.contactCount() >= kManyContacts;
-    if (gives_first && giveWay(options)) return SolveMethod::kNewton;
+    if ((is_squeezed || !is_small) && giveWay(options)) return SolveMethod::kNewton;
     if (!options.thorough || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
     iterations_ +=
         followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
@@ -143,6 +143,14 @@ class FewSearch {
 
   bool isSpent() const { return scratch_.operations_left < 0; }
 
+  void goOnProximally(const SolverOptions& options) {
+    restartFromBest();
+    evaluate(problem_, current_);
+    iterations_ +=
+        iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
+    keepBest();
+  }
+
   // Newton's method from `current`; true if what it finds will do.
   bool finish(const SolverOptions& options) {
     const double tolerance = 0.5 * options.tolerance;  // leaves room for the round-off of scaling back
@@ -154,7 +162,17 @@ class FewSearch {
     return isEnough(options) && !(options.largest_give > 0 && isSqueezedNow());
   }
   bool isEnough(const SolverOptions& options) const {
-    return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
+    return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, slip(), problem_.speed));
+  }
+  // The best iterate's, of what pushes [m/s].
+  double slip() const {
+    double fastest = 0;
+    for (int i = 0; i < problem_.contactCount(); ++i) {
+      const int first = problem_.firstRow(i);
+      if (!(best_.r[first + kNormalRow] > 0)) continue;
+      fastest = std::max(fastest, problem_.scale[i] * std::sqrt(tangentNorm2(best_.u + first, problem_.rows(i))));
+    }
+    return fastest;
   }
 
   // True if contacts that contradict each other have an answer if they give way a little.
@@ -246,7 +264,8 @@ void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, E
 // A point between walls that nothing else solved: `r`, `u` and `result` are as they were unless this does.
 void tryPointProblem(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r,
                      double* u, SolveResult& result) {
-  const double enough = std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
+  const double content = contentResidual(options, fastestSlip(problem, r, u), referenceSpeed(problem));
+  const double enough = std::max(options.tolerance, content);
   if (!solvePointProblem(problem, enough, scratch, r, u, result.residual)) return;
   result.method = SolveMethod::kSweeps;
   result.converged = true;
@@ -276,8 +295,8 @@ void solveFewContacts(const ContactProblem& problem, const SolverOptions& option
   const ContactError error = errorOf(problem, r, scratch, u);
   result.residual = error.residual;
   result.error = error.speed;
-  result.converged = result.converged &&
-                     error.residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
+  const double content = contentResidual(options, fastestSlip(problem, r, u), referenceSpeed(problem));
+  result.converged = result.converged && error.residual <= std::max(options.tolerance, content);
   if (!result.converged) result.method = SolveMethod::kNotConverged;
   if (!result.converged && isPointProblem(problem)) tryPointProblem(problem, options, scratch, r, u, result);
   if (isSqueezed(problem, scratch.weight, r)) yieldToWalls(problem, options, form, scratch, r, u, result);
