@@ -35,6 +35,8 @@ class Polytope {
   // The hull of `points` [m]. `source` names them in messages. Throws InputError: fewer than 4 points, a coordinate
   // that isn't finite, all points in one plane, more than kMaxVertices corners.
   static std::shared_ptr<const Polytope> hullOf(const std::vector<Vec3>& points, const std::string& source);
+  // The vertices() of that hull, for less: without its inner body. Throws as hullOf.
+  static std::vector<Vec3> cornersOfHull(const std::vector<Vec3>& points, const std::string& source);
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
   const std::vector<Face>& faces() const { return faces_; }
@@ -66,6 +68,8 @@ class Polytope {
   void setFaces(const std::vector<std::array<int, 3>>& facets, double flat, const std::string& source);
   void setEdges(const std::string& source);
   void setSurroundings();
+  double thickness() const;
+  void setInset();
   double leastDepth(const std::vector<Vec3>& points) const;
 
   std::vector<Vec3> vertices_, inset_vertices_;

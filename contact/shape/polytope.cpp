@@ -137,7 +137,14 @@ std::vector<int> borderOf(const std::vector<HullFacet>& facets, const std::vecto
 
 std::shared_ptr<const Polytope> Polytope::hullOf(const std::vector<Vec3>& points, const std::string& source) {
   requirePoints(points, source);
-  return std::shared_ptr<const Polytope>(new Polytope(points, source));
+  const std::shared_ptr<Polytope> hull(new Polytope(points, source));
+  hull->setInset();
+  return hull;
+}
+
+std::vector<Vec3> Polytope::cornersOfHull(const std::vector<Vec3>& points, const std::string& source) {
+  requirePoints(points, source);
+  return std::move(Polytope(points, source).vertices_);
 }
 
 Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
@@ -161,25 +168,34 @@ Polytope::Polytope(const std::vector<Vec3>& points, const std::string& source) {
   setEdges(source);
   PINCER_ASSERT(vertices_.size() + faces_.size() == edges_.size() + 2);  // Euler
   setSurroundings();
-  double thickness = sizeOf(points);
+  if (!(thickness() > flat)) rejectFlat(source);
+}
+
+// How far the middle of the corners is from the nearest face [m].
+double Polytope::thickness() const {
+  double thickness = kInfinity;
   Vec3 middle = Vec3::Zero();
   for (const Vec3& v : vertices_) middle += v / static_cast<double>(vertices_.size());
   for (const Face& face : faces_) thickness = std::min(thickness, face.d - face.n.dot(middle));
-  if (!(thickness > flat)) rejectFlat(source);
-  inset_vertices_ = insetCorners(vertices_, 0.05 * thickness);
+  return thickness;
+}
+
+void Polytope::setInset() {
+  inset_vertices_ = insetCorners(vertices_, 0.05 * thickness());
   if (inset_vertices_.empty()) inset_vertices_ = vertices_;
   inset_ = leastDepth(inset_vertices_);  // measured: Bullet's grid makes it up to a tenth less than was asked for
 }
 
 // How deep inside of every face all of `points` lie [m], 0 if one doesn't.
 double Polytope::leastDepth(const std::vector<Vec3>& points) const {
+  const auto n = static_cast<Eigen::Index>(points.size());
+  Eigen::ArrayX3d columns(n, 3);  // by coordinate: two points at a time, and the same bits as one by one
+  for (Eigen::Index i = 0; i < n; ++i) columns.row(i) = points[static_cast<std::size_t>(i)].transpose();
   double least = kInfinity;
   for (const Face& face : faces_) {
-    // Four at a time: one maximum would wait for the one before. The result has the same bits.
-    std::array<double, 4> highest;
-    highest.fill(-kInfinity);
-    for (std::size_t i = 0; i < points.size(); ++i) highest[i % 4] = std::max(highest[i % 4], face.n.dot(points[i]));
-    least = std::min(least, face.d - *std::max_element(highest.begin(), highest.end()));
+    const double highest =
+        (columns.col(0) * face.n.x() + columns.col(1) * face.n.y() + columns.col(2) * face.n.z()).maxCoeff();
+    least = std::min(least, face.d - highest);
   }
   return std::max(least, 0.0);
 }

@@ -11,7 +11,6 @@
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/tasks/run/robot/robot_pose.h"
 #include "pincer/tasks/run/robot/robot_scene_parts.h"
-#include "pincer/tasks/run/robot/robot_shapes.h"
 
 namespace pincer::tasks {
 namespace {
@@ -76,9 +75,10 @@ void writePose(const Pose& X, JsonWriter& json) {
   if (!turn.isZero(0)) json.key("rotation").value(turn);
 }
 
-void writeGeom(const RobotGeom& geom, const Pose& X, const std::vector<RobotMesh>& meshes, JsonWriter& json) {
+void writeGeom(SceneWriting& w, const RobotGeom& geom, const Pose& X) {
+  JsonWriter& json = w.json;
   json.beginObject().key("shape");
-  writeRobotShape(geom, X, meshes, json);
+  writeRobotShape(geom, X, w.hulls, json);
   if (geom.shape != RobotShape::kPlane) writePose(X, json);
   writeFriction(geom.friction, json);
   json.key("collides")
@@ -92,13 +92,13 @@ void writeGeom(const RobotGeom& geom, const Pose& X, const std::vector<RobotMesh
 }
 
 // Touchable shapes; a body that nothing touches is a dot that is only seen.
-void writeShapes(const std::vector<std::pair<const RobotGeom*, Pose>>& geoms, const std::vector<RobotMesh>& meshes,
-                 JsonWriter& json) {
+void writeShapes(SceneWriting& w, const std::vector<std::pair<const RobotGeom*, Pose>>& geoms) {
+  JsonWriter& json = w.json;
   json.key("shapes").beginArray();
   bool is_empty = true;
   for (const auto& [geom, X] : geoms) {
     if (geom->isOnlySeen()) continue;
-    writeGeom(*geom, X, meshes, json);
+    writeGeom(w, *geom, X);
     is_empty = false;
   }
   if (is_empty) {
@@ -128,7 +128,7 @@ const std::string& betweenName(SceneWriting& w, const RobotBody& body, std::size
 
 void writeBetween(SceneWriting& w, const std::string& name, const Pose& X_WB) {
   w.json.beginObject().key("name").value(name);
-  writeShapes({}, {}, w.json);
+  writeShapes(w, {});
   writeInertia({kNextToNothing, Vec3::Zero(), kNextToNoMoment * Mat3::Identity()}, w.json);
   writePose(X_WB, w.json);
   w.json.endObject();
@@ -165,7 +165,7 @@ void writeLink(SceneWriting& w, const RobotLink& link) {
   }
   w.json.beginObject().key("name").value(w.bodyName(link.body));
   if (link.is_static) w.json.key("static").value(true);
-  writeShapes(link.geoms, w.posed.robot.meshes, w.json);
+  writeShapes(w, link.geoms);
   if (!link.is_static) writeInertia(link.inertia, w.json);
   writePose(w.posed.pose(link.body), w.json);
   w.json.endObject();
@@ -178,7 +178,7 @@ void writeBodies(SceneWriting& w) {
     std::vector<std::pair<const RobotGeom*, Pose>> geoms;
     for (const RobotGeom& geom : robot.world_geoms) geoms.emplace_back(&geom, w.posed.X_WR * geom.X_BG);
     w.json.beginObject().key("name").value(w.names.of("world", "world")).key("static").value(true);
-    writeShapes(geoms, robot.meshes, w.json);
+    writeShapes(w, geoms);
     w.json.endObject();
   }
   for (const RobotLink& link : w.posed.links) writeLink(w, link);
@@ -326,7 +326,7 @@ std::string sceneOfRobot(const Robot& robot, const RobotSceneOptions& options, I
   refuseTheRest(robot);
   noteTheRest(robot, notes);
   const PosedRobot posed = poseRobot(robot, options, notes);
-  SceneWriting w{posed, notes, NamesOfRobot(options.prefix)};
+  SceneWriting w{posed, notes, NamesOfRobot(options.prefix), RobotHulls(robot.meshes)};
   w.json.beginObject()
       .key("version")
       .value(1)

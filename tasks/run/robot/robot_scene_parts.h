@@ -3,6 +3,7 @@
 #include "pincer/tasks/run/files/json_writer.h"
 #include "pincer/tasks/run/robot/import_notes.h"
 #include "pincer/tasks/run/robot/robot_links.h"
+#include "pincer/tasks/run/robot/robot_shapes.h"
 #include "pincer/tasks/run/robot/scene_names_of_robot.h"
 
 namespace pincer::tasks {
@@ -11,6 +12,7 @@ struct SceneWriting {
   const PosedRobot& posed;
   ImportNotes& notes;
   NamesOfRobot names;
+  RobotHulls hulls;
   JsonWriter json = {};
 
   const std::string& bodyName(int body) { return names.of("body", posed.body(body).name); }

@@ -24,18 +24,21 @@ std::vector<Vec3> ellipsoidPoints(const Vec3& half) {
   return points;
 }
 
-std::vector<Vec3> hullPoints(const RobotGeom& geom, const RobotMesh& mesh) {
+}  // namespace
+
+const std::vector<Vec3>& RobotHulls::cornersOf(const RobotGeom& geom) {
+  const auto found = corners_.find(geom.mesh);
+  if (found != corners_.end()) return found->second;
+  const RobotMesh& mesh = meshes_[static_cast<std::size_t>(geom.mesh)];
   try {
-    return contact::Polytope::hullOf(mesh.triangles.vertices, mesh.name)->vertices();
+    return corners_[geom.mesh] = contact::Polytope::cornersOfHull(mesh.triangles.vertices, mesh.name);
   } catch (const InputError& error) {
     throw InputError(
         fmt::format("{}: the mesh \"{}\" has no hull: {}", geom.place, printable(mesh.name), error.what()));
   }
 }
 
-}  // namespace
-
-void writeRobotShape(const RobotGeom& geom, const Pose& X_BG, const std::vector<RobotMesh>& meshes, JsonWriter& json) {
+void writeRobotShape(const RobotGeom& geom, const Pose& X_BG, RobotHulls& hulls, JsonWriter& json) {
   json.beginObject();
   switch (geom.shape) {
     case RobotShape::kPlane:
@@ -56,7 +59,7 @@ void writeRobotShape(const RobotGeom& geom, const Pose& X_BG, const std::vector<
       json.key("type").value("box").key("size").value(Vec3(2 * geom.half));
       break;
     case RobotShape::kMesh:
-      writePoints(hullPoints(geom, meshes[static_cast<std::size_t>(geom.mesh)]), json);
+      writePoints(hulls.cornersOf(geom), json);
       break;
   }
   json.endObject();

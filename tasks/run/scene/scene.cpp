@@ -90,9 +90,9 @@ void readJointed(const JsonValue& json, SceneNames& names, Scene& scene) {
   }
 }
 
-void readBodies(const JsonValue& json, SceneNames& names, Scene& scene) {
+void readBodies(const JsonValue& json, SceneNames& names, SceneHulls& hulls, Scene& scene) {
   for (const JsonValue& body : listOf(json.at("bodies", "What is in the world."), kMostBodies)) {
-    readBody(body, names, scene);
+    readBody(body, names, hulls, scene);
     scene.body_lines.push_back(body.line());
   }
   if (const JsonValue* v = json.find("pairs")) {
@@ -120,14 +120,15 @@ void tellDrives(const JsonValue& json, const std::string& prefix, Scene& scene) 
 }
 
 // Its bodies, joints and drives; in messages all of them stand where the robot is named.
-void addRobot(const JsonValue& json, const RobotFileOptions& options, SceneNames& names, Scene& scene) {
+void addRobot(const JsonValue& json, const RobotFileOptions& options, SceneNames& names, SceneHulls& hulls,
+              Scene& scene) {
   const std::array lines = {&scene.body_lines, &scene.joint_lines, &scene.coupling_lines, &scene.drive_lines,
                             &scene.pair_lines};
   std::array<std::ptrdiff_t, lines.size()> before;
   for (std::size_t i = 0; i < lines.size(); ++i) before[i] = std::ssize(*lines[i]);
   const RobotJson robot = readRobot(json, options, scene);
   try {
-    readBodies(robot.json, names, scene);
+    readBodies(robot.json, names, hulls, scene);
   } catch (const InputError& error) {
     json.reject(fmt::format("can't be had: {}", error.what()));
   }
@@ -162,10 +163,11 @@ Scene sceneOf(const JsonValue& json, const std::string& name, const RobotFileOpt
   if (const JsonValue* v = json.find("combination"))
     scene.options.combination = static_cast<engine::Combination>(v->oneOf(keys::kCombinations));
   SceneNames names;
+  SceneHulls hulls;
   if (const JsonValue* v = json.find("robots")) {
-    for (const JsonValue& robot : listOf(*v, kMostRobots)) addRobot(robot, options, names, scene);
+    for (const JsonValue& robot : listOf(*v, kMostRobots)) addRobot(robot, options, names, hulls, scene);
   }
-  readBodies(json, names, scene);
+  readBodies(json, names, hulls, scene);
   if (const JsonValue* v = json.find("fingers")) readFingers(*v, names, scene);
   if (scene.bodies.empty() && scene.fingers.empty())
     json.at("bodies").reject("is empty, and there is no finger: nothing could happen.");

@@ -113,14 +113,14 @@ double readMass(const JsonValue& json, const engine::BodySpec& spec) {
   return !weight ? given : json.find("density") ? given + *weight : *weight;
 }
 
-void readShapes(const JsonValue& json, const std::string& file, engine::BodySpec& spec) {
+void readShapes(const JsonValue& json, const std::string& file, SceneHulls& hulls, engine::BodySpec& spec) {
   const JsonValue* shapes = json.find("shapes");
   if (!shapes) {
-    spec.shape = readShape(json.at("shape", "For example {\"type\": \"sphere\", \"radius\": 0.02}."), file);
+    spec.shape = readShape(json.at("shape", "For example {\"type\": \"sphere\", \"radius\": 0.02}."), file, hulls);
     return;
   }
   refuse(json, "shape", "doesn't go with \"shapes\". Keep one of the two.");
-  spec.shapes = readParts(*shapes, file);
+  spec.shapes = readParts(*shapes, file, hulls);
 }
 
 engine::BodyStart readStart(const JsonValue& json, const engine::BodySpec& spec) {
@@ -144,11 +144,11 @@ engine::BodyStart readStart(const JsonValue& json, const engine::BodySpec& spec)
 
 }  // namespace
 
-void readBody(const JsonValue& json, SceneNames& names, Scene& scene) {
+void readBody(const JsonValue& json, SceneNames& names, SceneHulls& hulls, Scene& scene) {
   json.allowOnly(keys::kBody);
   engine::BodySpec spec;
   spec.name = names.readNextBody(json, scene);
-  readShapes(json, scene.file, spec);
+  readShapes(json, scene.file, hulls, spec);
   spec.dynamic = readDynamic(json, hasSupport(spec));
   spec.mass = readMass(json, spec);
   if (const JsonValue* inertia = json.find("inertia")) spec.inertia = readInertia(*inertia);

@@ -30,9 +30,10 @@ Pose readPartPose(const JsonValue& json, const contact::Shape& shape) {
 }
 
 // One shape, or those of a file of pieces.
-std::vector<contact::Shape> readPartShapes(const JsonValue& json, const std::string& file) {
+std::vector<contact::Shape> readPartShapes(const JsonValue& json, const std::string& file, SceneHulls& hulls) {
   const JsonValue* pieces = json.find("pieces");
-  if (!pieces) return {readShape(json.at("shape", "For example {\"type\": \"sphere\", \"radius\": 0.02}."), file)};
+  if (!pieces)
+    return {readShape(json.at("shape", "For example {\"type\": \"sphere\", \"radius\": 0.02}."), file, hulls)};
   refuse(json, "shape", "doesn't go with \"pieces\". Keep one of the two.");
   return readPieces(*pieces, file);
 }
@@ -54,7 +55,7 @@ void weigh(const JsonValue& json, std::vector<engine::ColliderSpec>& parts) {
   for (engine::ColliderSpec& part : parts) part.mass = *weight * engine::volumeOf(part.shape) / whole;
 }
 
-std::vector<engine::ColliderSpec> readPart(const JsonValue& json, const std::string& file) {
+std::vector<engine::ColliderSpec> readPart(const JsonValue& json, const std::string& file, SceneHulls& hulls) {
   json.allowOnly(keys::kPart);
   engine::ColliderSpec common;
   if (const JsonValue* material = json.find("material")) common.material = readMaterial(*material);
@@ -63,7 +64,7 @@ std::vector<engine::ColliderSpec> readPart(const JsonValue& json, const std::str
     common.bits = {readBits(*collides, "as"), readBits(*collides, "with")};
   }
   std::vector<engine::ColliderSpec> parts;
-  for (const contact::Shape& shape : readPartShapes(json, file)) {
+  for (const contact::Shape& shape : readPartShapes(json, file, hulls)) {
     engine::ColliderSpec& part = parts.emplace_back(common);
     part.shape = shape;
     part.X_BS = readPartPose(json, shape);
@@ -83,14 +84,14 @@ std::string readPartName(const JsonValue& json, std::size_t number, std::set<std
 
 }  // namespace
 
-std::vector<engine::ColliderSpec> readParts(const JsonValue& json, const std::string& file) {
+std::vector<engine::ColliderSpec> readParts(const JsonValue& json, const std::string& file, SceneHulls& hulls) {
   const std::vector<JsonValue>& entries = json.array();
   if (entries.empty()) json.reject("is empty. Give the body one shape or more.");
   std::vector<engine::ColliderSpec> parts;
   std::set<std::string> taken;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const std::string name = readPartName(entries[i], i, taken);
-    std::vector<engine::ColliderSpec> of_entry = readPart(entries[i], file);
+    std::vector<engine::ColliderSpec> of_entry = readPart(entries[i], file, hulls);
     for (std::size_t k = 0; k < of_entry.size(); ++k) {
       of_entry[k].name = of_entry.size() == 1 ? name : fmt::format("{}-{}", name, k);
       parts.push_back(std::move(of_entry[k]));

@@ -1,6 +1,7 @@
 // scene_parts: the parts of a scene file, each read by a page of its own. Used by scene.cpp alone.
 #pragma once
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,6 +42,20 @@ class SceneNames {
   std::unordered_map<std::string, int> bodies_;  // their places in the scene: a robot's parts may stand before them
 };
 
+// The hulls of a scene's shapes, while it is read. Equal ones are one: a robot has the same fingertip several times.
+class SceneHulls {
+ public:
+  // Throws InputError as contact::Polytope::hullOf.
+  std::shared_ptr<const contact::Polytope> hullOf(const std::vector<Vec3>& points);
+
+ private:
+  struct Known {
+    std::vector<Vec3> points;
+    std::shared_ptr<const contact::Polytope> hull;
+  };
+  std::vector<Known> known_;
+};
+
 // The mass of what has this volume [m^3], by "mass" or "density"; nothing if neither is there.
 std::optional<double> readWeight(const JsonValue& json, const std::function<double()>& volume);
 void refuse(const JsonValue& json, std::string_view key, std::string_view because);
@@ -48,12 +63,12 @@ Vec3 readVector(const JsonValue& json, std::string_view key, const NumberRule& r
 bool isSupport(const contact::Shape& shape);                                           // half-spaces and dishes
 engine::Material readMaterial(const JsonValue& json);
 // The entries of a body's "shapes".
-std::vector<engine::ColliderSpec> readParts(const JsonValue& json, const std::string& file);
+std::vector<engine::ColliderSpec> readParts(const JsonValue& json, const std::string& file, SceneHulls& hulls);
 engine::GivenInertia readInertia(const JsonValue& json);
 
 // Adds one body and its start to `scene`.
-void readBody(const JsonValue& json, SceneNames& names, Scene& scene);
-contact::Shape readShape(const JsonValue& json, const std::string& file);
+void readBody(const JsonValue& json, SceneNames& names, SceneHulls& hulls, Scene& scene);
+contact::Shape readShape(const JsonValue& json, const std::string& file, SceneHulls& hulls);
 // The convex pieces of a file.
 std::vector<contact::Shape> readPieces(const JsonValue& json, const std::string& file);
 // Pose of a half-space in W, from its normal and a point on it.

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pincer/contact/io/printable.h"
@@ -164,11 +165,19 @@ std::vector<Vec3> readPoints(const JsonValue& json, const std::string& scene_fil
   return points;
 }
 
+std::shared_ptr<const contact::Polytope> SceneHulls::hullOf(const std::vector<Vec3>& points) {
+  const auto found =
+      std::find_if(known_.begin(), known_.end(), [&](const Known& known) { return known.points == points; });
+  if (found != known_.end()) return found->hull;
+  known_.push_back({points, contact::Polytope::hullOf(points, "convex")});
+  return known_.back().hull;
+}
+
 namespace {
 
-contact::Shape readConvex(const JsonValue& json, const std::string& scene_file) {
+contact::Shape readConvex(const JsonValue& json, const std::string& scene_file, SceneHulls& hulls) {
   try {
-    return contact::Convex{contact::Polytope::hullOf(readPoints(json, scene_file), "convex")};
+    return contact::Convex{hulls.hullOf(readPoints(json, scene_file))};
   } catch (const InputError& error) {
     json.reject(fmt::format("can't be used: {}", error.what()));
   }
@@ -197,7 +206,7 @@ std::span<const std::string_view> keysOf(std::size_t type) {
 
 }  // namespace
 
-contact::Shape readShape(const JsonValue& json, const std::string& file) {
+contact::Shape readShape(const JsonValue& json, const std::string& file, SceneHulls& hulls) {
   const std::size_t type = json.at("type", "One of the shapes in docs/scenes.md.").oneOf(keys::kShapeTypes);
   json.allowOnly(keysOf(type));
   const std::string_view name = keys::kShapeTypes[type];
@@ -209,7 +218,7 @@ contact::Shape readShape(const JsonValue& json, const std::string& file) {
   if (name == "cylinder_with_flat") return readCylinderWithFlat(json);
   if (name == "dish") return contact::Dish{length(json, "radius")};
   if (name == "mesh") return readMesh(json, file);
-  if (name == "convex") return readConvex(json, file);
+  if (name == "convex") return readConvex(json, file, hulls);
   return contact::HalfSpace{};
 }
 

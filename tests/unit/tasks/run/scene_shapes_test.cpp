@@ -109,6 +109,22 @@ void writeCup(const std::string& path, bool has_floor = true) {
   out << "f 25 27 28 26\nf 29 30 32 31\nf 25 26 30 29\nf 27 31 32 28\nf 25 29 31 27\nf 26 28 32 30\n";
 }
 
+// Each fingertip of a robot had its hull built anew, which was most of what loading it took.
+TEST(SceneShapes, EqualHullsAreBuiltOnce) {
+  const auto body = [](const std::string& name, const std::string& height) {
+    return R"({"name": ")" + name + R"(", "mass": 1, "shape": {"type": "convex",
+      "points": [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, )" +
+           height + "]]}}";
+  };
+  const Scene scene = parseScene(R"({"version": 1, "duration": 0.1, "bodies": [)" + body("a", "0.1") + ", " +
+                                     body("b", "0.2") + ", " + body("c", "0.1") + "]}",
+                                 "s.json");
+  const auto hull = [&](std::size_t i) { return std::get<contact::Convex>(scene.bodies[i].shape).hull; };
+  EXPECT_EQ(hull(0), hull(2));
+  EXPECT_NE(hull(0), hull(1));
+  EXPECT_EQ(hull(1)->boundingRadius(), 0.2);
+}
+
 TEST(SceneShapes, ANamedPartOfAFileIsAShapeOfItsOwn) {
   const tests::TemporaryDirectory folder;
   writeCup(folder / "cup.obj");
