@@ -23,6 +23,62 @@ double referenceOf(const Robot& robot, const std::string& name) {
   return 0;
 }
 
+using Polynomial = std::vector<double>;  // factors of 1, z, z^2 ..
+
+constexpr std::size_t kMostFactors = 5;  // of a scene's coupling
+
+Polynomial product(const Polynomial& a, const Polynomial& b) {
+  Polynomial out(a.size() + b.size() - 1, 0.0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t k = 0; k < b.size(); ++k) out[i + k] += a[i] * b[k];
+  }
+  return out;
+}
+
+// outer(inner(z)), without highest powers that have no factor.
+Polynomial composed(const Polynomial& outer, const Polynomial& inner) {
+  Polynomial out = {0};
+  for (std::size_t k = outer.size(); k-- > 0;) {
+    out = product(out, inner);
+    out[0] += outer[k];
+    while (out.size() > 1 && out.back() == 0) out.pop_back();
+  }
+  return out;
+}
+
+const RobotCoupling* couplingOf(const Robot& robot, const std::string& follower) {
+  const auto found = std::find_if(robot.couplings.begin(), robot.couplings.end(),
+                                  [&](const RobotCoupling& c) { return c.follower == follower; });
+  return found == robot.couplings.end() ? nullptr : &*found;
+}
+
+// The coupling to the joint that follows none: a scene's followers aren't followed themselves.
+RobotCoupling toTheFirst(const Robot& robot, const RobotCoupling& coupling) {
+  RobotCoupling whole = coupling;
+  std::size_t steps = 0;
+  while (const RobotCoupling* next = couplingOf(robot, whole.leader)) {
+    if (++steps > robot.couplings.size())
+      rejectAt(coupling.place, fmt::format("<joint> makes \"{}\" follow itself. Let all follow one joint that is free.",
+                                           coupling.follower));
+    whole.polynomial = composed(whole.polynomial, next->polynomial);
+    whole.leader = next->leader;
+    if (whole.polynomial.size() > kMostFactors)
+      rejectAt(
+          coupling.place,
+          fmt::format("<joint> follows \"{0}\", which follows \"{1}\": a polynomial of \"{1}\" with powers up to {2}, "
+                      "and 4 is the most. Let it follow \"{1}\", with a polynomial near to that.",
+                      coupling.leader, next->leader, whole.polynomial.size() - 1));
+  }
+  return whole;
+}
+
+void requireOneLeader(const Robot& robot, const RobotCoupling& coupling) {
+  const RobotCoupling* first = couplingOf(robot, coupling.follower);
+  if (first == &coupling) return;
+  rejectAt(coupling.place, fmt::format("<joint> is the second that \"{}\" follows by: the first is at {}. Keep one.",
+                                       coupling.follower, first->place));
+}
+
 // In powers of the leader's coordinate: the file's are of its way from where it is drawn, and give the follower's.
 std::vector<double> shifted(const Robot& robot, const RobotCoupling& coupling) {
   const double shift = -referenceOf(robot, coupling.leader);
@@ -42,10 +98,12 @@ void writeCouplings(SceneWriting& w) {
   if (w.posed.robot.couplings.empty()) return;
   w.json.key("couplings").beginArray();
   for (const RobotCoupling& coupling : w.posed.robot.couplings) {
+    requireOneLeader(w.posed.robot, coupling);
     if (coupling.leader.empty()) rejectAt(coupling.place, "<joint> holds a joint still. Leave the joint out instead.");
-    w.json.beginObject().key("joint").value(w.names.of("joint", coupling.follower));
-    w.json.key("follows").value(w.names.of("joint", coupling.leader)).key("polynomial").beginArray();
-    for (const double c : shifted(w.posed.robot, coupling)) w.json.value(c);
+    const RobotCoupling whole = toTheFirst(w.posed.robot, coupling);
+    w.json.beginObject().key("joint").value(w.names.of("joint", whole.follower));
+    w.json.key("follows").value(w.names.of("joint", whole.leader)).key("polynomial").beginArray();
+    for (const double c : shifted(w.posed.robot, whole)) w.json.value(c);
     w.json.endArray().endObject();
   }
   w.json.endArray();

@@ -125,6 +125,44 @@ TEST_F(RobotScenes, BodiesBesideARobotAreFoundByTheirNames) {
       << tests::errorOf([&] { scene("it_elbow"); });
 }
 
+// b follows a, and c follows b: q_b = 0.2 + 0.5 a + 0.25 a^2, q_c = 2 (q_b - 0.2).
+const std::string kThreeInARow =
+    R"(<mujoco><compiler angle="radian"/><default><joint axis="0 1 0"/><geom size=".01" pos=".02 0 0" mass="1"/></default>
+  <worldbody><body name="a"><joint name="qa"/><geom/></body><body name="b" pos="0 1 0"><joint name="qb" ref=".2"/><geom/></body>
+    <body name="c" pos="0 2 0"><joint name="qc"/><geom/></body></worldbody>
+  <equality><joint joint1="qc" joint2="qb" polycoef="0 2"/><joint joint1="qb" joint2="qa" polycoef="0 .5 .25"/>)";
+
+// It was refused, by names that the file doesn't have and without a line.
+TEST_F(RobotScenes, WhatFollowsAFollowerFollowsTheFirst) {
+  const Scene scene = sceneOfText(kThreeInARow + "</equality></mujoco>", {.start = {{"qa", 0.4}}});
+  ASSERT_EQ(scene.couplings.size(), 2u);
+  EXPECT_EQ(scene.couplings[0].follows, scene.couplings[1].follows);
+  EXPECT_EQ(scene.couplings[0].polynomial, (std::array{0.0, 1.0, 0.5, 0.0, 0.0}));
+  Simulation sim(scene);
+  run(sim, 100);
+  const double a = measured(sim, "qa.position"), b = 0.2 + 0.5 * a + 0.25 * a * a;
+  EXPECT_GT(a, 0.41);
+  EXPECT_NEAR(measured(sim, "qb.position"), b, 1e-15);
+  EXPECT_NEAR(measured(sim, "qc.position"), 2 * (b - 0.2), 1e-15);
+}
+
+TEST_F(RobotScenes, FollowersThatCantBeHadAreRefusedAtTheirLine) {
+  const auto complaint = [&](const std::string& more) {
+    return tests::errorOf([&] { sceneOfText(kThreeInARow + "\n" + more + "</equality></mujoco>"); });
+  };
+  const auto expect = [&](const std::string& more, const std::string& place, const std::string& what) {
+    const std::string message = complaint(more);
+    EXPECT_NE(message.find(place), std::string::npos) << message;
+    EXPECT_NE(message.find(what), std::string::npos) << message;
+  };
+  expect(R"(<joint joint1="qa" joint2="qc"/>)", "robot.xml:4: ", "follow itself");
+  expect(R"(<joint joint1="qc" joint2="qa"/>)", "robot.xml:5: ", "the first is at ");
+  std::string steep = kThreeInARow;
+  steep.replace(steep.find("\"0 2\""), 5, "\"0 0 0 1\"");
+  EXPECT_NE(tests::errorOf([&] { sceneOfText(steep + "</equality></mujoco>"); }).find("powers up to 6"),
+            std::string::npos);
+}
+
 // A slider's way was in "rad or m".
 TEST_F(RobotScenes, QuantitiesAreInTheUnitOfTheirJoint) {
   const Scene scene = sceneOfText(R"(<mujoco><worldbody>
