@@ -8,7 +8,8 @@ std::vector<Measurement> contactMeasurements(const ContactBenchOptions& options)
   std::vector<Measurement> all;
   for (std::vector<Measurement> part :
        {strokeMeasurements(options), accuracyMeasurements(), curveMeasurements(), shadingMeasurements(options),
-        fingerSceneMeasurements(options), pairMeasurements(), meshPairMeasurements(), costMeasurements(options)}) {
+        fingerSceneMeasurements(options), pairMeasurements(), meshPairMeasurements(), meshDefectMeasurements(),
+        costMeasurements(options)}) {
     std::move(part.begin(), part.end(), std::back_inserter(all));
   }
   return all;

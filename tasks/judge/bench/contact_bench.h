@@ -30,7 +30,8 @@ std::vector<Measurement> curveMeasurements();                                   
 std::vector<Measurement> costMeasurements(const ContactBenchOptions& options);     // nanoseconds, growth, peers
 std::vector<Measurement> shadingMeasurements(const ContactBenchOptions& options);  // the variants side by side, plots
 std::vector<Measurement> pairMeasurements();                                       // two bodies: errors, costs, names
-std::vector<Measurement> meshPairMeasurements();  // bodies on meshes: facets, many triangles
+std::vector<Measurement> meshPairMeasurements();    // bodies on meshes: facets, many triangles
+std::vector<Measurement> meshDefectMeasurements();  // bad meshes: reading, repair, contact
 // a finger that presses and drags
 std::vector<Measurement> fingerSceneMeasurements(const ContactBenchOptions& options);
 

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "pincer/contact/generated_meshes.h"
+#include "pincer/grasp/pressure_map.h"
 #include "pincer/tasks/judge/bench/contact_bench.h"
 #include "pincer/tasks/judge/bench/finger_scene.h"
 #include "pincer/tasks/judge/bench/objects.h"
@@ -242,6 +243,36 @@ std::vector<Record> thinWalls(MeasureContext& context) {
           exactly("pushes that came through", static_cast<double>(pushes.through), "-", 0)};
 }
 
+// Forces of random contacts, spread over 12 x 10 taxels of 2 mm: their sums and moments are the contacts'.
+std::vector<Record> pressureMaps(MeasureContext&) {
+  constexpr grasp::PressureGrid kGrid{.rows = 12, .columns = 10, .pitch = 2e-3};
+  Random random(1);
+  double force = 0, moment = 0;
+  for (int i = 0; i < 1000; ++i) {
+    grasp::PadForce c;
+    c.place = {random.uniform(-5e-3, 5e-3), random.uniform(-4e-3, 4e-3)};
+    c.force = {random.uniform(1, 3), {random.uniform(-1, 1), random.uniform(-1, 1)}};
+    c.radius = random.uniform(1e-4, 3e-3);
+    c.torsion = random.uniform(-1e-3, 1e-3);
+    c.hertz = i % 2 == 0;
+    std::vector<grasp::Taxel> map(static_cast<std::size_t>(kGrid.rows * kGrid.columns));
+    grasp::spread(kGrid, c, map);
+    double normal = 0, around = 0;
+    Vec2 tangential = Vec2::Zero(), first = Vec2::Zero();
+    for (std::size_t k = 0; k < map.size(); ++k) {
+      const Vec2 x = grasp::taxelPlace(kGrid, static_cast<int>(k) / kGrid.columns, static_cast<int>(k) % kGrid.columns);
+      normal += map[k].normal;
+      tangential += map[k].tangential;
+      first += map[k].normal * x;
+      around += x.x() * map[k].tangential.y() - x.y() * map[k].tangential.x();
+    }
+    const double about_place = c.place.x() * c.force.tangential.y() - c.place.y() * c.force.tangential.x();
+    force = std::max({force, std::abs(normal - c.force.normal), (tangential - c.force.tangential).norm()});
+    moment = std::max({moment, (first - c.force.normal * c.place).norm(), std::abs(around - c.torsion - about_place)});
+  }
+  return {atMost("sums of 120 taxels, off by", force, "N", 1e-14), atMost("moments, off by", moment, "N m", 1e-16)};
+}
+
 }  // namespace
 
 std::vector<Measurement> fingerSceneMeasurements(const ContactBenchOptions& options) {
@@ -252,6 +283,7 @@ std::vector<Measurement> fingerSceneMeasurements(const ContactBenchOptions& opti
       {"scene/friction-on-a-plate", frictionRows},
       {"scene/any-scale", anyScale},
       {"scene/thin-wall", thinWalls},
+      {"scene/pressure-map", pressureMaps},
       {"scene/drag/rounded-cube",
        [](MeasureContext& c) { return dragOverPart(contact::roundedCube(0.02, 0.004, 3), c); }},
   };

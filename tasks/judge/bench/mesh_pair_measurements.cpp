@@ -1,5 +1,5 @@
-// Bodies on meshes: what solids feel of the facets of a ball's mesh, judged by the ball; what two finely cut meshes
-// that lie on each other cost.
+// Bodies on meshes: what solids feel of the facets of a ball's mesh, judged by the ball; how straight a prism slides on
+// a finely cut plane; what two finely cut meshes that lie on each other cost.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +8,7 @@
 #include "pincer/contact/pair_query.h"
 #include "pincer/contact/polytope.h"
 #include "pincer/contact/smooth_mesh.h"
+#include "pincer/engine/step.h"
 #include "pincer/tasks/judge/bench/contact_bench.h"
 #include "pincer/tasks/run/measure/timing.h"
 
@@ -17,6 +18,7 @@ namespace {
 using contact::PairPoint;
 using contact::PairPoints;
 using contact::Shape;
+using contact::SmoothMesh;
 
 constexpr double kBallRadius = 0.02;  // radius [m]
 constexpr double kPressedBy = 1e-5;   // of the flat slide [m]
@@ -91,7 +93,7 @@ MeshFelt slideOver(const Shape& mesh, const OverBall& over, MeasureContext& cont
 
 Measurement facetsFelt(const OverBall& over) {
   return {fmt::format("pair/facets/{}", over.name), [over](MeasureContext& context) {
-            const Shape mesh = contact::Mesh{contact::SmoothMesh::build(contact::geodesicSphere(kBallRadius, 7))};
+            const Shape mesh = contact::Mesh{SmoothMesh::build(contact::geodesicSphere(kBallRadius, 7))};
             const MeshFelt felt = slideOver(mesh, over, context);
             return std::vector<Record>{
                 atMost("980 triangles: gap, from the ball's", 1e6 * felt.gap, "um", 1),
@@ -103,7 +105,7 @@ Measurement facetsFelt(const OverBall& over) {
 
 // Two plates face to face, each of 12 cells^2 triangles.
 double costOfPlates(int cells) {
-  const Shape plate = contact::Mesh{contact::SmoothMesh::build(contact::gridBox({0.04, 0.04, 0.01}, cells))};
+  const Shape plate = contact::Mesh{SmoothMesh::build(contact::gridBox({0.04, 0.04, 0.01}, cells))};
   contact::preparePair(plate, plate);
   const contact::PatchCacheHandle cache = contact::makePatchCache();
   PairPoints found;
@@ -123,11 +125,55 @@ std::vector<Record> measurePlates(MeasureContext&) {
           atMost("40368 triangles each, of 10092", finest / fine, "-", 4)};
 }
 
+// The way of a prism of three sides on a plane of `cells` squares a side, along its heading and across it [m]: at first
+// with `speed` [m/s], and pushed on with the share `push` of the friction that it bears.
+Vec2 wayOfPrism(int cells, double heading, double speed, double push, double seconds) {
+  constexpr double kG = 9.81, kMu = 0.4, kHalfHeight = 0.006, kThick = 0.01;
+  const Vec3 along(math::cos(heading), math::sin(heading), 0);
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 6; ++i) {
+    const double angle = i * 2 * M_PI / 3;
+    corners.emplace_back(0.02 * math::cos(angle), 0.02 * math::sin(angle), i < 3 ? -kHalfHeight : kHalfHeight);
+  }
+  engine::WorldOptions options;
+  options.gravity_W = Vec3(0, 0, -kG) + push * kMu * kG * along;
+  engine::WorldBuilder builder{options};
+  const contact::Mesh plane{SmoothMesh::build(contact::gridBox({0.3, 0.3, kThick}, cells))};
+  builder.addBody({"plane", plane, false, 0, {kMu, kMu, 0, 0}});
+  builder.addBody({"prism", contact::Convex{contact::Polytope::hullOf(corners, "prism")}, true, 0.1, {kMu, kMu, 0, 0}});
+  const engine::WorldModel model = builder.build();
+  const Vec3 from(-0.051, -0.037, kThick + kHalfHeight);
+  engine::WorldState state =
+      engine::makeState(model, {engine::BodyStart{}, {{Quat::Identity(), from}, speed * along, Vec3::Zero()}}, {});
+  const engine::ScratchHandle scratch = engine::makeScratch(model);
+  for (int tick = 0; tick < static_cast<int>(1e3 * seconds); ++tick) engine::step(model, state, *scratch);
+  const Vec3 way = engine::bodyPose(model, state, 1).p - from;
+  return {way.dot(along), way.dot(Vec3::UnitZ().cross(along))};
+}
+
+std::vector<Record> measurePrism(MeasureContext& context) {
+  constexpr double kSpeed = 0.5, kStop = kSpeed * kSpeed / (2 * 0.4 * 9.81);  // [m/s], [m]
+  double along = 0, across = 0, creep = 0;
+  for (const int cells : {1, 9, 20, 40}) {
+    for (const double heading : {0.0, 0.31, 0.7}) {
+      if (context.interrupted()) return {};
+      const Vec2 way = wayOfPrism(cells, heading, kSpeed, 0, 0.3);
+      along = std::max(along, std::abs(way[0] - kStop));
+      across = std::max(across, std::abs(way[1]));
+    }
+    creep = std::max(creep, wayOfPrism(cells, 0.31, 0, 0.9, 6).norm());
+  }
+  return {atMost("way to a stop from 0.5 m/s, off by", 1e6 * along, "um", 10),
+          atMost("sideways meanwhile", 1e6 * across, "um", 1),
+          atMost("creep in 6 s under 0.9 of the friction", 1e6 * creep, "um", 1)};
+}
+
 }  // namespace
 
 std::vector<Measurement> meshPairMeasurements() {
   std::vector<Measurement> measurements;
   for (const OverBall& over : solidsOverBall()) measurements.push_back(facetsFelt(over));
+  measurements.push_back({"pair/prism-on-a-plane", measurePrism});
   measurements.push_back({"pair/plates-of-many-triangles", measurePlates});
   return measurements;
 }
