@@ -1,6 +1,9 @@
 #include "pincer/contact/surface/surface_search.h"
 
+#include <algorithm>
+#include <initializer_list>
 #include <limits>
+#include <span>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/surface/edge_cubic.h"
@@ -23,7 +26,7 @@ bool meets(const Vec3& a, const Vec3& b, const Vec3& p0, const Vec3& p1, const V
   return u >= 0 && v >= 0 && u + v <= 1 && s >= 0 && s <= 1;
 }
 
-// The normals that contact on a triangle may have.
+// The normals that contact on a triangle, and on its sharp edges, may have.
 class ConeFinder {
  public:
   explicit ConeFinder(const SurfaceNet& net) : net_(net), kind_(net.mesh().vertices.size(), kSmooth) {
@@ -36,20 +39,30 @@ class ConeFinder {
     }
   }
 
-  NormalCone find(std::int32_t t, const SurfaceCell& cell) {
-    const Patch& p = cell.patch;
-    const Vec3 facet = (p.b030 - p.b300).cross(p.b003 - p.b300);
-    normals_ = {p.n200, p.n020, p.n002, p.n110, p.n011, p.n101, facet.normalized()};
+  // The patch's own normals, and those of its sharp edges and corners but where these are apart.
+  NormalCone onFace(std::int32_t t, const Patch& p) {
+    normals_ = {p.n200, p.n020, p.n002, p.n110, p.n011, p.n101, facetOf(t)};
     for (int i = 0; i < 3; ++i) {
-      if (kindAt(t, i) == kBorder) {
-        has_border_ = true;
-        return {};
-      }
-      if (kindAt(t, i) == kSharp)
-        net_.visitCorners({t, i}, [&](const CellCorner& c) { addNormal(net_.normal(c.triangle, c.corner)); });
-      if (cell.sharp[static_cast<std::size_t>(i)]) addOtherSide(t, i);
+      if (kindAt(t, i) == kSharp && !isWideAt(t, i)) addNormalsAt(t, i);
+      const Neighbour other = net_.neighbour(t, i);
+      if (net_.isSharp(t, i) && other.triangle >= 0 && !isApart(t, i, other)) addSide(other.triangle, other.edge);
     }
-    return coneOf(normals_);
+    return coneBeside(t, {0, 1, 2});
+  }
+  // The normals of both sides of a sharp edge, and all at its ends.
+  NormalCone onEdge(std::int32_t t, int i, Neighbour other) {
+    normals_ = {facetOf(t), facetOf(other.triangle)};
+    addSide(t, i);
+    addSide(other.triangle, other.edge);
+    for (const int corner : {i, (i + 1) % 3}) addNormalsAt(t, corner);
+    return coneBeside(t, {i, (i + 1) % 3});
+  }
+  // True if the normals there are too many directions for the patches beside to be gentle (lone_contact.h) with them.
+  bool isApart(std::int32_t t, int i, Neighbour other) const {
+    std::array<Vec3, 4> sides = {net_.normal(t, i), net_.normal(t, (i + 1) % 3),
+                                 net_.normal(other.triangle, other.edge),
+                                 net_.normal(other.triangle, (other.edge + 1) % 3)};
+    return isWide(sides) || isWideAt(t, i) || isWideAt(t, (i + 1) % 3);
   }
   bool hasBorder() const { return has_border_; }  // among what was looked at
 
@@ -60,12 +73,29 @@ class ConeFinder {
     return kind_[static_cast<std::size_t>(
         net_.mesh().triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(corner)])];
   }
+  Vec3 facetOf(std::int32_t t) const {
+    return (net_.vertex(t, 1) - net_.vertex(t, 0)).cross(net_.vertex(t, 2) - net_.vertex(t, 0)).normalized();
+  }
+  // At a border it may be any normal.
+  NormalCone coneBeside(std::int32_t t, std::initializer_list<int> corners) {
+    const bool is_at_border =
+        std::any_of(corners.begin(), corners.end(), [&](int corner) { return kindAt(t, corner) == kBorder; });
+    has_border_ = has_border_ || is_at_border;
+    return is_at_border ? NormalCone{} : coneOf(normals_);
+  }
   void addNormal(const Vec3& n) { normals_.push_back(n); }
-  void addOtherSide(std::int32_t t, int edge) {
-    const Neighbour other = net_.neighbour(t, edge);
-    const Vec3 n0 = net_.normal(other.triangle, other.edge), n1 = net_.normal(other.triangle, (other.edge + 1) % 3);
-    addNormal(middleNormal(net_.vertex(other.triangle, other.edge), net_.vertex(other.triangle, (other.edge + 1) % 3),
-                           n0, n1));
+  void addNormalsAt(std::int32_t t, int corner) {
+    net_.visitCorners({t, corner}, [&](const CellCorner& c) { addNormal(net_.normal(c.triangle, c.corner)); });
+  }
+  static bool isWide(std::span<const Vec3> normals) { return !(coneOf(normals).cosine >= LoneContact::kCosBeta); }
+  bool isWideAt(std::int32_t t, int corner) const {
+    std::vector<Vec3> normals;
+    net_.visitCorners({t, corner}, [&](const CellCorner& c) { normals.push_back(net_.normal(c.triangle, c.corner)); });
+    return isWide(normals);
+  }
+  void addSide(std::int32_t t, int i) {
+    const int k = (i + 1) % 3;
+    addNormal(middleNormal(net_.vertex(t, i), net_.vertex(t, k), net_.normal(t, i), net_.normal(t, k)));
   }
 
   const SurfaceNet& net_;
@@ -74,24 +104,18 @@ class ConeFinder {
   bool has_border_ = false;
 };
 
-FacingBox boxAround(const Patch& patch, const NormalCone& cone, float hollow) {
-  Vec3 low = patch.b300, high = low;
-  for (const Vec3& p : controlPoints(patch)) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  return {
-      {below(low[0]), below(low[1]), below(low[2])}, {above(high[0]), above(high[1]), above(high[2])}, cone, hollow};
+bool isConcave(const SurfaceNet& net, std::int32_t t, int i, Neighbour other) {
+  const Vec3 facet = (net.vertex(t, 1) - net.vertex(t, 0)).cross(net.vertex(t, 2) - net.vertex(t, 0));
+  return facet.dot(net.vertex(other.triangle, (other.edge + 2) % 3) - net.vertex(t, i)) > 0;
 }
 
-double hollowOf(const SurfaceNet& net, std::int32_t t, const SurfaceCell& cell) {
+// Infinity at a concave crease that isn't apart.
+double hollowOf(const SurfaceNet& net, std::int32_t t, const SurfaceCell& cell, const ConeFinder& cones) {
   double hollow = 0;
-  const Vec3 facet = (cell.patch.b030 - cell.patch.b300).cross(cell.patch.b003 - cell.patch.b300);
   for (int i = 0; i < 3; ++i) {
     const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
     const bool is_crease = cell.sharp[static_cast<std::size_t>(i)] && other.triangle >= 0;
-    if (is_crease && facet.dot(net.vertex(other.triangle, (other.edge + 2) % 3) - net.vertex(t, i)) > 0)
-      return kInfinity;
+    if (is_crease && isConcave(net, t, i, other) && !cones.isApart(t, i, other)) return kInfinity;
     hollow = std::max(hollow, concaveCurvature(cell.patch, i));
   }
   return hollow;
@@ -106,49 +130,90 @@ double bulgeOf(const Patch& patch) {
   return std::sqrt(bulge2);
 }
 
+// The tree's items: bounds of patches or of sharp edges.
+struct SearchItems {
+  std::vector<FacingBox> boxes;
+  std::vector<PatchBounds> parts;
+
+  // One that is in the hull of its control points.
+  template <class Points>
+  void add(const Vec3& centre, const Points& points, const NormalCone& cone, float hollow, float bulge) {
+    PatchBounds part{{static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])},
+                     0,
+                     bulge,
+                     hollow,
+                     FacingTest(cone)};
+    double radius2 = 0;
+    Vec3 low = points[0], high = low;
+    for (const Vec3& p : points) {
+      radius2 = std::max(radius2, (p - part.middle()).squaredNorm());
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    part.radius = above(std::sqrt(radius2));
+    parts.push_back(part);
+    boxes.push_back({{below(low[0]), below(low[1]), below(low[2])},
+                     {above(high[0]), above(high[1]), above(high[2])},
+                     cone,
+                     hollow});
+  }
+  void append(const SearchItems& others) {
+    boxes.insert(boxes.end(), others.boxes.begin(), others.boxes.end());
+    parts.insert(parts.end(), others.parts.begin(), others.parts.end());
+  }
+  void reserve(std::int32_t count) {
+    boxes.reserve(static_cast<std::size_t>(count));
+    parts.reserve(static_cast<std::size_t>(count));
+  }
+};
+
 }  // namespace
 
 SurfaceSearch::SurfaceSearch(const SurfaceNet& net, NetInspector& inspector,
-                             const std::function<void(double)>& progress) {
+                             const std::function<void(double)>& progress)
+    : triangles_(net.size()) {
   constexpr double kPatches = 0.6;             // of the time
   constexpr std::int32_t kReported = 1 << 14;  // patches between two reports of progress
   ConeFinder cones(net);
-  std::vector<FacingBox> boxes;
-  std::vector<PatchBounds> unordered;
-  boxes.reserve(static_cast<std::size_t>(net.size()));
-  unordered.reserve(static_cast<std::size_t>(net.size()));
+  SearchItems items, edges;
+  items.reserve(net.size());
   for (std::int32_t t = 0; t < net.size(); ++t) {
     const SurfaceCell cell = net.build(t);
-    inspector.see(t, cell.patch);
-    const NormalCone cone = cones.find(t, cell);
-    const Vec3 centre = (cell.patch.b300 + cell.patch.b030 + cell.patch.b003) / 3;
-    PatchBounds part{{static_cast<float>(centre[0]), static_cast<float>(centre[1]), static_cast<float>(centre[2])},
-                     0,
-                     0,
-                     0,
-                     FacingTest(cone)};
-    double radius2 = 0;
-    for (const Vec3& p : controlPoints(cell.patch)) radius2 = std::max(radius2, (p - part.middle()).squaredNorm());
-    part.radius = above(std::sqrt(radius2));
-    part.bulge = above(bulgeOf(cell.patch));
-    part.hollow = above(hollowOf(net, t, cell));
-    bulge_ = std::max<double>(bulge_, part.bulge);
-    unordered.push_back(part);
-    boxes.push_back(boxAround(cell.patch, cone, part.hollow));
+    const Patch& patch = cell.patch;
+    inspector.see(t, patch);
+    const float bulge = above(bulgeOf(patch)), hollow = above(hollowOf(net, t, cell, cones));
+    const Vec3 centre = (patch.b300 + patch.b030 + patch.b003) / 3;
+    items.add(centre, controlPoints(patch), cones.onFace(t, patch), hollow, bulge);
+    bulge_ = std::max<double>(bulge_, bulge);
+    for (int i = 0; i < 3; ++i) {
+      const Neighbour other = cell.neighbours[static_cast<std::size_t>(i)];
+      if (!cell.sharp[static_cast<std::size_t>(i)] || other.triangle < t) continue;  // once each; no border
+      if (!cones.isApart(t, i, other)) continue;
+      const auto curve = edgeCurve(patch, i);
+      const float hollow_there = isConcave(net, t, i, other) ? static_cast<float>(kInfinity) : hollow;
+      edges.add(0.5 * (curve.front() + curve.back()), curve, cones.onEdge(t, i, other), hollow_there, bulge);
+      edge_triangles_.push_back({t, other.triangle});
+    }
     if (progress && t % kReported == 0) progress(kPatches * t / net.size());
   }
+  items.append(edges);
+  edge_triangles_.shrink_to_fit();
   const auto tree_progress = [&](double share) { progress(kPatches + (1 - kPatches) * share); };
-  tree_ = FacingTree(boxes, progress ? std::function<void(double)>(tree_progress) : nullptr);
+  tree_ = FacingTree(items.boxes, progress ? std::function<void(double)>(tree_progress) : nullptr);
   is_closed_ = !cones.hasBorder();
   constexpr double kFlat = 1e-9;  // of the mesh's size
   if (bulge_ < kFlat * net.length()) bulge_ = 0;
+  fillGroups(items.parts);
+}
+
+void SurfaceSearch::fillGroups(const std::vector<PatchBounds>& parts) {
   constexpr float kNowhere = std::numeric_limits<float>::infinity();  // [m]: no bound reaches it
   const PatchBounds none{{kNowhere, kNowhere, kNowhere}, 0, 0, 0, FacingTest(NormalCone{})};
   const auto& order = tree_.order();
   groups_.resize((order.size() + kLanes - 1) / kLanes);
   for (std::size_t i = 0; i < kLanes * groups_.size(); ++i) {
     groups_[i / kLanes].set(static_cast<int>(i % kLanes),
-                            i < order.size() ? unordered[static_cast<std::size_t>(order[i])] : none);
+                            i < order.size() ? parts[static_cast<std::size_t>(order[i])] : none);
   }
 }
 
@@ -219,8 +284,8 @@ bool SurfaceSearch::isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b
   tree_.visitInBox(a.cwiseMin(b), a.cwiseMax(b), [&](std::int32_t leaf) {
     const std::int32_t end = std::min(kLanes * (leaf + 1), static_cast<std::int32_t>(tree_.order().size()));
     for (std::int32_t place = kLanes * leaf; place < end && !is_hidden; ++place) {
-      const std::int32_t t = triangleAt(place);
-      is_hidden = meets(a, b, net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2));
+      const std::int32_t t = tree_.order()[static_cast<std::size_t>(place)];
+      is_hidden = t < triangles_ && meets(a, b, net.vertex(t, 0), net.vertex(t, 1), net.vertex(t, 2));
     }
     return !is_hidden;
   });

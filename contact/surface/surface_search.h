@@ -3,13 +3,15 @@
 //
 // The tree's boxes hold the patches' control nets, so a patch that bulges out of its triangle isn't missed, and each
 // has a normal cone (normal_cone.h), so that only parts that may face the point are looked at: few, wherever a surface
-// isn't a bowl about that point, and no more of a fine mesh than of a coarse one. A cone holds the patch's shading
-// normals and its facet's; along sharp edges and at their ends also the other sides', for there the contact's normal
-// may be any between them; at borders it may be any at all. Within a leaf a patch is skipped by its own ball and cone,
+// isn't a bowl about that point, and no more of a fine mesh than of a coarse one. A patch's cone holds its shading
+// normals and its facet's, and those of sharp edges and their ends, for contact there may have any normal between their
+// sides; at borders it may be any at all. An edge whose normals spread by more than 30 degrees is a part of its own:
+// else each patch between two rims would face everything. Within a leaf a part is skipped by its own ball and cone,
 // then by its flat triangle less the patch's bulge (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5);
 // what is left is evaluated over the triangle's closest point. Where all local minima of the distance are wanted, a
 // triangle counts only if its closest point is one of the flat mesh: no neighbour leads nearer.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -29,10 +31,10 @@ struct SurfaceSeed {
   bool found = false;  // false: nothing within the bound
 };
 
-// A patch in single precision, rounded outwards.
+// A patch, or a sharp edge, in single precision, rounded outwards.
 struct PatchBounds {
   std::array<float, 3> centre;
-  float radius;  // of a ball that holds the patch [m]
+  float radius;  // of a ball that holds it [m]
   float bulge;   // no point of the patch is further from the flat triangle [m]
   float hollow;  // the largest concave curvature along its edges [1/m], 0 where convex; infinity with a concave crease
   FacingTest cone;
@@ -62,7 +64,14 @@ class SurfaceSearch {
   double bulge(std::int32_t place) const { return group(place / kLanes).bulge[place % kLanes]; }
   // the largest [m]; 0 where round-off is all that patches differ from their triangles by
   double bulge() const { return bulge_; }
-  std::int32_t triangleAt(std::int32_t place) const { return tree_.order()[static_cast<std::size_t>(place)]; }
+  // The place's triangle; a sharp edge's first one.
+  std::int32_t triangleAt(std::int32_t place) const { return trianglesAt(place)[0]; }
+  // The triangles that the place belongs to: a sharp edge's two, or twice the only one.
+  std::array<std::int32_t, 2> trianglesAt(std::int32_t place) const {
+    const std::int32_t item = tree_.order()[static_cast<std::size_t>(place)];
+    if (item < triangles_) return {item, item};
+    return edge_triangles_[static_cast<std::size_t>(item - triangles_)];
+  }
 
   // The place of that patch's flat triangle that is nearest to `p`, if it is nearer than `reach` (less what the patch
   // bulges), `p` is in front, and no neighbour leads nearer.
@@ -76,7 +85,10 @@ class SurfaceSearch {
   // True if the flat triangles hide `a` from `b`. Allocates nothing.
   bool isHidden(const SurfaceNet& net, const Vec3& a, const Vec3& b) const;
 
-  std::size_t memoryBytes() const { return tree_.memoryBytes() + groups_.capacity() * sizeof(PatchGroup); }
+  std::size_t memoryBytes() const {
+    return tree_.memoryBytes() + groups_.capacity() * sizeof(PatchGroup) +
+           edge_triangles_.capacity() * sizeof(edge_triangles_[0]);
+  }
 
  private:
   // The patches of a leaf side by side; of a lane without one the centre is at infinity.
@@ -93,9 +105,13 @@ class SurfaceSearch {
     // Which of them mayHold, after `p` has moved by less than `way` [m].
     LaneMask mayHold(const LanesPoint& p, Lanes bound, Lanes way, Facing facing) const;
   };
+  void fillGroups(const std::vector<PatchBounds>& parts);
   const PatchGroup& group(std::int32_t leaf) const { return groups_[static_cast<std::size_t>(leaf)]; }
 
+  // The tree's items are the triangles, then the sharp edges that are apart, by their two triangles.
   FacingTree tree_;
+  std::int32_t triangles_ = 0;
+  std::vector<std::array<std::int32_t, 2>> edge_triangles_;
   std::vector<PatchGroup> groups_;  // of the tree's leaves
   bool is_closed_ = false;
   double bulge_ = 0;

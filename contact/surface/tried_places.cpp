@@ -82,13 +82,14 @@ double Lookout::reachOfTry(bool has_turn) const {
 
 void Lookout::examine(const Turns& turns, NearPart& near) {
   const PatchBounds part = search_.part(near.place);
-  const std::int32_t triangle = search_.triangleAt(near.place);
+  const auto [triangle, other] = search_.trianglesAt(near.place);
   near.turn = gone_ + turns.wayToNext(near.place);
   const double reach = reachOfTry(turns.isOf(near.place));
   if (reach < ball_.reach && !(reach > 0 && part.mayHold(ball_.C, reach, Facing::front))) return;
   const double way = std::max(0.0, part.approach(ball_.C, ball_.reach) - kRoundOff * surface_.net.length());
   near.due = gone_ + way;
-  if (way > 0 || !part.mayHold(ball_.C, reach, Facing::front) || isKnown(triangle, part)) return;
+  if (way > 0 || !part.mayHold(ball_.C, reach, Facing::front)) return;
+  if (isKnown(triangle, part) && (other == triangle || isKnown(other, part))) return;
   const FlatPoint flat = closestOnFacet(surface_.net, triangle, ball_.C);
   const double distance = std::sqrt(flat.distance2) - part.bulge;  // of large patches more than their balls tell
   near.due += std::max(0.0, distance - ball_.reach - kRoundOff * surface_.net.length());

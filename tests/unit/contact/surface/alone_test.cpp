@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/surface/flat_minimum.h"
 #include "pincer/contact/surface/near_parts.h"
 #include "pincer/contact/surface/shell_face.h"
 #include "pincer/contact/surface/surface_search.h"
@@ -38,20 +39,22 @@ Vec3 randomVector(RandomNumbers& random, double size) {
   return {x, y, z};
 }
 
-// Contacts within reach of `p` that aren't `main`, that p faces and that nothing hides.
+// Contacts within reach of `p` that aren't `main`, that p faces and that nothing hides: from all minima of the flat
+// mesh, whatever bounds the search has.
 int othersThan(const ShellContact& main, Surface& s, const Vec3& p) {
-  constexpr double kAtOnce = 1e-300, kShort = 0.95;
+  constexpr double kShort = 0.95;
+  const double reach = kReach + s.search.bulge();
   int others = 0;
-  s.search.visitParts(p, kReach, kAtOnce, ConesAlong(), [&](std::int32_t place, double) {
-    const auto foot = s.search.minimumOn(s.net, place, p, kReach);
-    if (!foot) return;
-    const ShellContact found = solveShell(s.net, s.cache, p, *foot);
-    if (!found.converged || !(found.h > 0 && found.h < kReach) || found.n.dot(main.n) > kApart) return;
+  for (std::int32_t t = 0; t < s.net.size(); ++t) {
+    const FlatPoint flat = closestOnFacet(s.net, t, p);
+    if (!(flat.distance2 < reach * reach) || !isFlatMinimum(s.net, t, flat, p)) continue;
+    const ShellContact found = solveShell(s.net, s.cache, p, {t, flat.b});
+    if (!found.converged || !(found.h > 0 && found.h < kReach) || found.n.dot(main.n) > kApart) continue;
     const PatchPoint x = evaluate(s.net.cell(found.foot.triangle, s.cache).patch, found.foot.b[1], found.foot.b[2]);
     const bool is_on_face = *std::min_element(found.foot.b.begin(), found.foot.b.end()) > 0;
-    if (is_on_face && !isStable(x, p)) return;
+    if (is_on_face && !isStable(x, p)) continue;
     others += !s.search.isHidden(s.net, p, p - kShort * found.h * found.n);
-  });
+  }
   return others;
 }
 
@@ -60,7 +63,8 @@ TEST(SurfaceAlone, NothingElseIsMetOnTheWay) {
   const TriangleMesh slot = tests::mapped(tests::pitBlock(0.02), Vec3(0.1, 1, 1).asDiagonal());
   for (const TriangleMesh& mesh :
        {geodesicSphere(0.02, 8), torus(0.03, 0.015, 96, 64), bumpySphere(0.03, 0.02, 4, 20),
-        ellipsoid({0.03, 0.02, 0.015}, 16), noisy(geodesicSphere(0.03, 12), 5e-5, 1), plate, slot}) {
+        ellipsoid({0.03, 0.02, 0.015}, 16), noisy(geodesicSphere(0.03, 12), 5e-5, 1), cylinder(0.025, 0.03, 50, 1),
+        cylinderWithFlat(0.025, 0.03, 0.015, 48, 1), box(Vec3::Constant(0.03)), plate, slot}) {
     Surface s(mesh);
     RandomNumbers random(3);
     const int tried = tests::draws(500, 20000);
@@ -83,7 +87,7 @@ TEST(SurfaceAlone, NothingElseIsMetOnTheWay) {
         ASSERT_EQ(othersThan(main, s, p), 0) << mesh.source << ' ' << i << " h " << h << " way " << way;
       }
     }
-    const bool is_gentle = mesh.source != plate.source && mesh.source != slot.source;
+    const bool is_gentle = mesh.triangles.size() > 1000 && mesh.source != plate.source && mesh.source != slot.source;
     EXPECT_GE(found, 0.7 * tried) << mesh.source;  // 403 of 500 and more
     // 193 of 500 and more. Of the plate and the slot none is said today; what is said of them is judged all the same.
     if (is_gentle) {

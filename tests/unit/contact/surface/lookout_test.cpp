@@ -143,6 +143,34 @@ TEST(SurfaceLookout, ItsJudgeSeesAPlaceThatIsLeftOut) {
   EXPECT_EQ(missed.missed, missed.with_several) << "each has one more face that the finger touches";
 }
 
+// The block's top is on both sides of a groove of 3 mm, so its normal is like that of the contact with either edge: who
+// takes an edge for the contact that its one side is beside misses it.
+TEST(SurfaceLookout, TellsOfBothEdgesOfANarrowGroove) {
+  constexpr double kEdge = 0.0015;  // [m]: half the groove's width, and its depth
+  const auto block = SmoothMesh::build(grooveBlock(M_PI / 4, kEdge, 0.03, 0.03));
+  for (const double step : {3e-5, 1e-4, 2e-4}) {
+    for (const double y : {-0.021, 0.002, 0.013}) {
+      SurfaceTracker tracker;
+      PatchCache cache;
+      int both = 0;
+      for (double x = -0.004; x < 0.004; x += step) {
+        const Vec3 C(x, y, kEdge + 0.0079);
+        const SurfaceContacts found = block->querySphere(C, kFinger, kNear, tracker, cache);
+        if (std::abs(x) > kEdge - 1e-6) continue;  // over one side of the top
+        ++both;
+        ASSERT_EQ(found.count, 2) << x << " step " << step;
+        for (int k = 0; k < 2; ++k) {
+          const SurfaceContact& c = found.points[static_cast<std::size_t>(k)];
+          const Vec3 E(c.p_BS.x() < 0 ? -kEdge : kEdge, y, kEdge);
+          EXPECT_LE((c.p_BS - E).norm(), 1e-12);
+          EXPECT_NEAR(c.phi, (C - E).norm() - kFinger, 1e-12);
+        }
+      }
+      EXPECT_GE(both, 14);
+    }
+  }
+}
+
 struct LedTogether {
   std::vector<double> phi;
   int looks = 0;

@@ -139,6 +139,17 @@ TEST(SurfaceSearch, LooksAtNoMoreOfAFinerMesh) {
   }
 }
 
+// Between two rims each patch was taken for one that faces everything: all hundred of a wall were listed.
+TEST(SurfaceSearch, FewPatchesOfAWallOfOneRowFaceAFinger) {
+  const Searched s(cylinder(0.025, 0.03, 50, 1));
+  for (const double z : {0.0, 0.01, 0.018}) {
+    int listed = 0;
+    s.search.visitParts({0.0325, 0, z}, 0.009, 0.001, kNothingPassed, [&](std::int32_t, double) { ++listed; });
+    EXPECT_GE(listed, 2) << z;
+    EXPECT_LE(listed, 30) << z;
+  }
+}
+
 TEST(SurfaceSearch, SeesWhatIsHidden) {
   const Searched s(box({0.02, 0.015, 0.03}));
   EXPECT_TRUE(s.search.isHidden(s.net, {0.05, 0, 0}, {-0.05, 0.001, 0.002}));
