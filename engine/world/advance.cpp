@@ -95,7 +95,7 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
   for (PointScratch& point : scratch.points) {
     rest(point);
     point.twist_impulse = 0;
-    point.turn_impulse_W.setZero();
+    if (point.inverse_turn > 0) point.turn_impulse_W.setZero();
   }
   for (Contact& c : scratch.contacts) {
     if (!c.active()) continue;

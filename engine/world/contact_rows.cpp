@@ -133,24 +133,37 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
   scratch.mu[i] = c.mu;
 }
 
+// A few contacts from `first` on, all of each two, are recalled and filled while they are in the cache: of a thousand
+// grasps all together aren't.
+int endOfBatch(std::span<const Contact> contacts, int first) {
+  constexpr int kBatch = 16;
+  const int n = static_cast<int>(contacts.size());
+  int end = std::min(first + kBatch, n);
+  while (end < n && isOfSameTwo(contacts[end - 1], contacts[end])) ++end;
+  return end;
+}
+
 }  // namespace
 
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   const int n = static_cast<int>(scratch.contacts.size());
   const Rates rates(model, state, scratch.h);
-  const std::span<const ContactMemory> memories(state.contacts.data(), static_cast<std::size_t>(state.contact_count));
+  std::span<const ContactMemory> memories(state.contacts.data(), static_cast<std::size_t>(state.contact_count));
   PINCER_ASSERT(isAscending(scratch.contacts, &Contact::id));
   PINCER_ASSERT(isAscending(memories, &ContactMemory::id));
   PINCER_ASSERT(scratch.contacts.size() <= scratch.mu.size());
   scratch.first_row[0] = 0;
-  recallContacts(memories, scratch);
-  if (model.has_hollows) {
-    steadyInHollows(model, state, scratch);
-    loosenWedges(scratch);
-  }
-  for (int i = 0; i < n; ++i) {
-    scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
-    fillContact(model, rates, scratch, i);
+  for (int first = 0, end = 0; first < n; first = end) {
+    end = model.has_hollows ? n : endOfBatch(scratch.contacts, first);
+    memories = recallContacts(memories, std::span(scratch.contacts).subspan(first, end - first), scratch);
+    if (model.has_hollows) {
+      steadyInHollows(model, state, scratch);
+      loosenWedges(scratch);
+    }
+    for (int i = first; i < end; ++i) {
+      scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
+      fillContact(model, rates, scratch, i);
+    }
   }
   if (scratch.h > 0) {
     alignStickBiases(scratch.h, rates.tangent, scratch);

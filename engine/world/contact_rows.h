@@ -37,10 +37,17 @@ void sortContacts(WorldScratch& scratch);
 
 // Finds what is remembered of the contacts, sorted by id, by identity, and of what has a new one by its place on the
 // pair (where corners lie on edges identities come and go); fills frames, arms, friction and stick offsets.
-void recallContacts(std::span<const ContactMemory> memories, WorldScratch& scratch);
+//   contacts  all of each two that it holds any of
+//   memories  sorted by id, from those of the first two on
+// Returns the memories from those of the last two on, for what comes after `contacts`.
+std::span<const ContactMemory> recallContacts(std::span<const ContactMemory> memories, std::span<Contact> contacts,
+                                              const WorldScratch& scratch);
 
 // Recalls the contacts, which are sorted, and fills first_row, q, mu and the warm start r, in their order.
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
+
+// Fills what contact i gets to know by its solution in scratch.r and u: r, impulse_W, u_C, sliding.
+void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c);
 
 // Writes what the contacts are to remember, and puts what sleeping ones remember among it (island_sleep.h); notes
 // which of them a tick changed nothing of.

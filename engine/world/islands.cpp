@@ -151,10 +151,10 @@ bool isCalm(const WorldModel& model, const Contact& c) {
 }
 
 // Of an island in which a contact may have more than two movers.
-void fillManySides(const WorldModel& model, WorldScratch& scratch, int k, Island& island, IslandScratch& s) {
+void fillManySides(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s) {
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
-  ContactSide* const all = s.many_sides.data() + s.sides_per_contact * island.place;
-  int* const first_side = s.first_side.data() + island.place + k;
+  ContactSide* const all = s.many_sides.data() + s.sides_per_contact * island.work;
+  int* const first_side = s.first_side.data() + 2 * island.work;
   int sides = 0;
   for (int n = 0; n < island.contacts; ++n) {
     const int i = order[n], rows = from_row[i + 1] - from_row[i];
@@ -208,7 +208,7 @@ void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, I
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   const Contact* const contacts = scratch.contacts.data();
   const ContactEnds* const all_ends = s.ends.data();
-  ContactSides* const all_sides = s.sides.data() + island.place;
+  ContactSides* const all_sides = s.sides.data() + island.work;
   for (int n = 0; n < island.contacts; ++n) {
     const int i = order[n], rows = from_row[i + 1] - from_row[i];
     const Contact& c = contacts[i];
@@ -235,13 +235,14 @@ void takeRows(WorldScratch& scratch, Island& island) {
   island.rows = island.first_row[island.contacts];
 }
 
-// Of island k among others, from `row` on.
-void copyRows(const WorldScratch& scratch, int k, int row, Island& island, IslandScratch& s) {
-  island.first_row = s.first_row.data() + island.place + k;
-  island.mu = s.mu.data() + island.place;
-  island.q = s.q.data() + row;
-  island.r = s.r.data() + row;
-  island.u = s.u.data() + row;
+// Of an island among others.
+void copyRows(const WorldScratch& scratch, Island& island, IslandScratch& s) {
+  const int first = kMaxContactRows * island.work;
+  island.first_row = s.first_row.data() + 2 * island.work;
+  island.mu = s.mu.data() + island.work;
+  island.q = s.q.data() + first;
+  island.r = s.r.data() + first;
+  island.u = s.u.data() + first;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   const double *const all_mu = scratch.mu.data(), *const all_q = scratch.q.data(), *const all_r = scratch.r.data();
   int rows_before = 0;
@@ -257,23 +258,22 @@ void copyRows(const WorldScratch& scratch, int k, int row, Island& island, Islan
     });
     rows_before += rows;
   }
-  PINCER_ASSERT(row + rows_before <= static_cast<int>(s.q.size()));
+  PINCER_ASSERT(first + rows_before <= static_cast<int>(s.q.size()));
   island.first_row[island.contacts] = island.rows = rows_before;
 }
 
-// Of island k, whose rows begin with `row`.
-void gather(const WorldModel& model, int k, int row, WorldScratch& scratch) {
+// Its rows and sides.
+void gather(const WorldModel& model, Island& island, WorldScratch& scratch) {
   IslandScratch& s = scratch.islands;
-  Island& island = s.islands[static_cast<std::size_t>(k)];
   if (s.islands.size() == 1 && scratch.far_contacts == 0) {
     takeRows(scratch, island);
   } else {
-    copyRows(scratch, k, row, island, s);
+    copyRows(scratch, island, s);
   }
   island.holds_trees = holdsTrees(s, island);
   island.has_many_sides = hasManySides(s, island);
   if (island.has_many_sides) {
-    fillManySides(model, scratch, k, island, s);
+    fillManySides(model, scratch, island, s);
   } else {
     fillSides(model, scratch, island, s);
   }
@@ -311,9 +311,9 @@ double restSpeed(const Island& island, const WorldOptions& options) {
   return std::max({kRestSpeed, on_links, of_many});
 }
 
-void scatter(const IslandScratch& s, const Island& island, const WorldOptions& options, WorldScratch& scratch) {
-  const int settling = nextSettling(island, isHeldByPads(s, island, scratch), options.solver.tolerance);
-  const double rest_speed = island.result.method == SolveMethod::kWarmStart ? restSpeed(island, options) : 0;
+void scatter(const IslandScratch& s, const Island& island, const WorldModel& model, WorldScratch& scratch) {
+  const int settling = nextSettling(island, isHeldByPads(s, island, scratch), model.options.solver.tolerance);
+  const double rest_speed = island.result.method == SolveMethod::kWarmStart ? restSpeed(island, model.options) : 0;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   Contact* const contacts = scratch.contacts.data();
   const double *r_k = island.r, *u_k = island.u;
@@ -323,16 +323,18 @@ void scatter(const IslandScratch& s, const Island& island, const WorldOptions& o
     contacts[i].settling = settling;
     contacts[i].rest_speed = rest_speed;
     contacts[i].yields = island.result.yields;
-    if (r_k == r) continue;  // nothing was copied
     const int first = from_row[i], rows = from_row[i + 1] - first;
-    withRows(rows, [&](auto count) {
-      for (int l = 0; l < count; ++l) {
-        r[first + l] = r_k[l];
-        u[first + l] = u_k[l];
-      }
-    });
-    r_k += rows;
-    u_k += rows;
+    if (island.r != r) {  // copied
+      withRows(rows, [&](auto count) {
+        for (int l = 0; l < count; ++l) {
+          r[first + l] = r_k[l];
+          u[first + l] = u_k[l];
+        }
+      });
+      r_k += rows;
+      u_k += rows;
+    }
+    readSolution(model, scratch, i, contacts[i]);
   }
 }
 
@@ -348,10 +350,9 @@ void addResult(const SolveResult& island, SolveResult& all) {
 }  // namespace
 
 void takeManySides(const Island& island, const IslandScratch& s, ContactProblem& problem) {
-  const auto k = static_cast<std::size_t>(&island - s.islands.data()), n = static_cast<std::size_t>(island.contacts);
-  const auto place = static_cast<std::size_t>(island.place);
-  problem.first_side = {s.first_side.data() + place + k, n + 1};
-  problem.sides = {s.many_sides.data() + static_cast<std::size_t>(s.sides_per_contact) * place,
+  const auto n = static_cast<std::size_t>(island.contacts), work = static_cast<std::size_t>(island.work);
+  problem.first_side = {s.first_side.data() + 2 * work, n + 1};
+  problem.sides = {s.many_sides.data() + static_cast<std::size_t>(s.sides_per_contact) * work,
                    static_cast<std::size_t>(problem.first_side.back())};
 }
 
@@ -371,27 +372,26 @@ void solveIslands(const WorldModel& model, WorldScratch& scratch) {
   s.rows = countRows(scratch);
   const int count = static_cast<int>(s.islands.size());
   const bool is_shared = s.threads && count > 1;
-  int row = 0;
   std::int64_t operations = 0;
-  const auto prepare = [&](int k) {
-    gather(model, k, row, scratch);
-    row += s.islands[static_cast<std::size_t>(k)].rows;
-  };
   const auto conclude = [&](const Island& island) {
-    scatter(s, island, model.options, scratch);
     addResult(island.result, scratch.solve);
+    scatter(s, island, model, scratch);
     operations += island.operations;
     scratch.hit_operations += island.hit_operations;
   };
   if (is_shared) {
-    for (int k = 0; k < count; ++k) prepare(k);
+    for (Island& island : s.islands) {
+      island.work = island.place;
+      gather(model, island, scratch);
+    }
     s.threads->run(count, [&](int k, int thread) { solveIsland(model, k, thread, scratch); });
     for (const Island& island : s.islands) conclude(island);
   }
   for (int k = 0; k < count && !is_shared; ++k) {  // each as a whole, while it is in the cache
-    prepare(k);
+    Island& island = s.islands[static_cast<std::size_t>(k)];
+    gather(model, island, scratch);
     solveIsland(model, k, 0, scratch);
-    conclude(s.islands[static_cast<std::size_t>(k)]);
+    conclude(island);
   }
   if (scratch.operations_left < kNoLimit) scratch.operations_left -= operations;  // below 0 if one of them ran out
 }

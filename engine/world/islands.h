@@ -17,9 +17,12 @@ struct WorldModel;
 struct WorldScratch;
 class IslandThreads;
 
-// Contacts place .. place + contacts - 1 of IslandScratch's arrays.
+// Contacts place .. place + contacts - 1 of IslandScratch::order.
 struct Island {
   int place = 0, contacts = 0, movers = 0;
+  // Of its rows and sides in IslandScratch's arrays. 0 where islands are solved one after the other, each in the place
+  // of the one before, which is in the cache.
+  int work = 0;
   int settling = 0;             // the most of its contacts (state.h)
   bool calm = true;             // all that moves of it is as good as at rest
   bool has_many_sides = false;  // its contacts' are in many_sides
@@ -42,7 +45,7 @@ struct ContactEnds {
   int a, b;
 };
 
-// Working memory. All arrays but `order` and those per mover are in the order of islands.
+// Working memory. All arrays but `order` and those per mover begin at Island::work.
 struct IslandScratch {
   explicit IslandScratch(const WorldModel& model);
   ~IslandScratch();
@@ -56,13 +59,13 @@ struct IslandScratch {
   std::vector<int> island_of;       // per root mover; per contact, while sorting
   std::vector<int> contact_island;
   std::vector<ContactEnds> ends;  // per contact, in the order of scratch.contacts
-  std::vector<int> first_row;     // island by island, each from 0: entries place + index of the island ..
+  std::vector<int> first_row;     // island by island, each from 0: entries 2 Island::work ..
   std::vector<ContactSides> sides;
   // Of worlds with trees: blocks are movers after bodies and points, and so is each joint row's own.
   int first_block = 0;            // the first one of those movers
   std::vector<int> block_parent;  // per block: the mover of the block before it on the way to the base, -1
   std::vector<ContactSide>
-      // of islands in which a contact has more than two movers, from place sides_per_contact times the island's on
+      // of islands in which a contact has more than two movers, from sides_per_contact times the island's `work` on
       many_sides;
   std::vector<int> first_side;     // likewise, as `first_row`
   int sides_per_contact = 2;       // at most
@@ -76,8 +79,8 @@ struct IslandScratch {
 void takeManySides(const Island& island, const IslandScratch& s, ContactProblem& problem);
 
 // Sorts scratch.contacts into islands, solves each from scratch.q, mu and r, and fills scratch.r, u and solve
-// (the worst of all islands' methods and residuals, the sum of their iterations), and the contacts'
-// `settling` and `quiet`. Allocates nothing.
+// (the worst of all islands' methods and residuals, the sum of their iterations), and what contacts get to know by
+// their solution. Allocates nothing.
 void solveIslands(const WorldModel& model, WorldScratch& scratch);
 
 }  // namespace pincer::engine

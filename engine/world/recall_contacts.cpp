@@ -80,11 +80,12 @@ namespace {
 std::uint64_t pairOf(std::uint64_t id) { return id >> 32; }
 
 // Contacts and memories come sorted by id: each finds its own on the way. Returns how many contacts between bodies
-// found none.
-int recallByIdentity(std::span<const ContactMemory> memories, WorldScratch& scratch) {
+// found none, and drops from `memories` those before the last contact's.
+int recallByIdentity(const WorldScratch& scratch, std::span<Contact> contacts,
+                     std::span<const ContactMemory>& memories) {
   int missing = 0;
   const ContactMemory *m = memories.data(), *const end = m + memories.size();
-  for (Contact& c : scratch.contacts) {
+  for (Contact& c : contacts) {
     place(scratch, c);
     while (m != end && m->id < c.id) ++m;
     const bool found = m != end && m->id == c.id;
@@ -92,6 +93,7 @@ int recallByIdentity(std::span<const ContactMemory> memories, WorldScratch& scra
     missing += !found && c.a.kind == SideKind::kBody;
     recall(c);
   }
+  memories = {m, end};
   return missing;
 }
 
@@ -147,12 +149,15 @@ void recallByPlace(std::span<const ContactMemory> memories, std::span<Contact> c
 
 }  // namespace
 
-void recallContacts(std::span<const ContactMemory> memories, WorldScratch& scratch) {
-  if (recallByIdentity(memories, scratch) == 0) return;
-  recallByPlace(memories, scratch.contacts);
-  for (Contact& c : scratch.contacts) {
+std::span<const ContactMemory> recallContacts(std::span<const ContactMemory> memories, std::span<Contact> contacts,
+                                              const WorldScratch& scratch) {
+  std::span<const ContactMemory> left = memories;
+  if (recallByIdentity(scratch, contacts, left) == 0) return left;
+  recallByPlace(memories, contacts);
+  for (Contact& c : contacts) {
     if (c.a.kind == SideKind::kBody) recall(c);
   }
+  return left;
 }
 
 }  // namespace pincer::engine

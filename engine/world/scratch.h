@@ -53,21 +53,22 @@ struct PointScratch : MoverScratch {
   bool mobility_touching = false;
   bool has_hollows = false;  // the model's
   bool turned = false;       // A isn't W
-  Mat3 R_WA = Mat3::Identity();
-  double inverse_twist = 0;            // effective inverse inertia about A's third axis [1/(kg m^2)]
-  double twist_share_of_end = 1;       // likewise
-  double twist_rate = 0;               // about it, past what the device turns, if nothing touched [rad/s]
-  double inverse_turn = 0;             // effective inverse inertia of its turning spring [1/(kg m^2)]
-  double turn_share_of_end = 1;        // likewise
-  Vec3 told_w_W = Vec3::Zero();        // that of its device [rad/s]
-  Vec3 turn_rate_W = Vec3::Zero();     // past that, if nothing touched [rad/s]
-  Vec3 turn_impulse_W = Vec3::Zero();  // of all contacts about it [N m s]
-  double turning_stiffness = 0;        // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
-  double twist_impulse = 0;            // of all contacts about their normals [N m s]
+  bool input_ok = true;
+  double inverse_twist = 0;  // effective inverse inertia about A's third axis [1/(kg m^2)]
+  double inverse_turn = 0;   // effective inverse inertia of its turning spring [1/(kg m^2)]
+  double twist_impulse = 0;  // of all contacts about their normals [N m s]
   Vec3 p_target_W = Vec3::Zero(), v_target_W = Vec3::Zero();  // at the end of the tick
   Vec3 v_tick_W = Vec3::Zero();                               // velocity at the start of the tick
   Vec3 tick_impulse_W = Vec3::Zero();                         // of all contacts over all parts of the tick [N s]
-  bool input_ok = true;
+  // Of points that turn, or whose axes do, last: of others no stage reads these lines of the cache.
+  Vec3 turn_impulse_W = Vec3::Zero();  // of all contacts about the turning spring [N m s]
+  Mat3 R_WA = Mat3::Identity();
+  double twist_share_of_end = 1;    // about A's third axis, as share_of_end
+  double twist_rate = 0;            // about it, past what the device turns, if nothing touched [rad/s]
+  double turn_share_of_end = 1;     // of the turning spring, likewise
+  Vec3 told_w_W = Vec3::Zero();     // that of its device [rad/s]
+  Vec3 turn_rate_W = Vec3::Zero();  // past that, if nothing touched [rad/s]
+  double turning_stiffness = 0;     // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
 
   // Change of velocity by an impulse.
   Vec3 response(const Vec3& impulse) const {

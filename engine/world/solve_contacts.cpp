@@ -26,17 +26,21 @@ bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Conta
   return w * c.r[kNormalRow] < kResidue * c.u_C[kNormalRow];
 }
 
+// A contact that is left out has no impulse; haveFarClosed finds its u_C.
+void readNoSolution(Contact& c) {
+  c.r.setZero();
+  c.impulse_W.setZero();
+  c.sliding = false;
+}
+
+}  // namespace
+
 void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c) {
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
   const double *const r = scratch.r.data() + first, *const u = scratch.u.data() + first;
-  PINCER_ASSERT(c.far || !scratch.solve.converged || r[kNormalRow] >= 0);
-  PINCER_ASSERT(c.far || !scratch.solve.converged || isInCone(r, count, c.mu, 1e-6) || scratch.h == 0);
+  PINCER_ASSERT(!scratch.solve.converged || r[kNormalRow] >= 0);
+  PINCER_ASSERT(!scratch.solve.converged || isInCone(r, count, c.mu, 1e-6) || scratch.h == 0);
   c.r.setZero();
-  if (c.far) {
-    c.impulse_W.setZero();
-    c.sliding = false;
-    return;
-  }
   withRows(count, [&](auto rows) {
     for (int k = 0; k < rows; ++k) c.r[k] = r[k];
   });
@@ -47,8 +51,6 @@ void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, C
   c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone &&
               tangentNorm2(u, count) > kSlidingSpeed * kSlidingSpeed;
 }
-
-}  // namespace
 
 void prepareContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
   if (!model.trees.empty()) leaveOutGrazingLinks(model, scratch);
@@ -64,8 +66,10 @@ void solveContacts(const WorldModel& model, WorldScratch& scratch) {
   if (scratch.contacts.empty()) return;
   ++scratch.solves;
   solveIslands(model, scratch);
-  for (std::size_t i = 0; i < scratch.contacts.size(); ++i)
-    readSolution(model, scratch, static_cast<int>(i), scratch.contacts[i]);
+  if (scratch.far_contacts == 0) return;
+  for (Contact& c : scratch.contacts) {
+    if (c.far) readNoSolution(c);
+  }
 }
 
 }  // namespace pincer::engine

@@ -80,7 +80,7 @@ class IslandSolve {
   }
   static ContactProblem problemOf(double h, Island& island, IslandScratch& s) {
     const auto n = static_cast<std::size_t>(island.contacts);
-    const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.place)].data(), 2 * n);
+    const std::span<const ContactSide> sides(s.sides[static_cast<std::size_t>(island.work)].data(), 2 * n);
     ContactProblem problem{
         {island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
         island.settling > 0,       island.calm};

@@ -27,7 +27,7 @@ class FingerLook {
         f_(model.fingers[finger]),
         point_(scratch.world.points[finger]),
         moves_(!point_.inverse_mass.isZero(0)),
-        report_(scratch.fingers[finger]) {}
+        nearest_(scratch.nearest[finger]) {}
 
   void at(int body) {
     const engine::BodyModel& b = model_.world.bodies[body];
@@ -70,7 +70,7 @@ class FingerLook {
       const double bound = bounding_radius < kEndless ? (p_WC - centre_W).norm() - bounding_radius - f_.radius
                                                       : contact::lowerBoundOfGap(shape, p_SC, f_.radius);
       if (bound > f_.reach && isBeyondMargin(bound, place.mid)) {
-        report_.gap = std::min(report_.gap, bound);
+        nearest_.gap = std::min(nearest_.gap, bound);
         return;
       }
     }
@@ -114,15 +114,14 @@ class FingerLook {
     const engine::BodyModel& b = model_.world.bodies[place.collider.body];
     const contact::SurfaceContact& main = found.main();
     // Static supports don't pre-position the tactor: what the hand looks for is an object.
-    if (b.dynamic && main.phi < report_.gap) {
-      report_.gap = main.phi;
+    if (b.dynamic && main.phi < nearest_.gap) {
+      nearest_.gap = main.phi;
       const Vec3 to_tip_W = place.p_WS + place.R_WS * main.p_BS - point_.p_mid_W;
-      Vec3& nearest_n_W = scratch_.nearest_n_W[finger_];
       if constexpr (std::is_same_v<Found, contact::FingerContacts>) {
-        nearest_n_W = place.R_WS * main.n_B;
-        scratch_.nearest_d_W[finger_] = to_tip_W + main.phi * nearest_n_W;
+        nearest_.n_W = place.R_WS * main.n_B;
+        nearest_.d_W = to_tip_W + main.phi * nearest_.n_W;
       } else {
-        nearest_n_W = -to_tip_W;  // where the facet is, whatever its shading says
+        nearest_.n_W = -to_tip_W;  // where the facet is, whatever its shading says
       }
     }
     if (!b.dynamic && !moves_) return;
@@ -156,7 +155,7 @@ class FingerLook {
   const FingerModel& f_;
   const engine::PointScratch& point_;
   const bool moves_;
-  FingerReport& report_;
+  NearestBody& nearest_;
 };
 
 }  // namespace
@@ -178,13 +177,13 @@ contact::FingerContacts fingerOnShape(const FingerModel& finger, const contact::
 }
 
 void findFingerContacts(const GraspModel& model, int finger, GraspState& state, GraspScratch& scratch) {
-  scratch.fingers[finger] = {};
-  scratch.fingers[finger].gap = std::numeric_limits<double>::max();
-  scratch.nearest_n_W[finger].setZero();
+  NearestBody& nearest = scratch.nearest[finger];
+  nearest.gap = std::numeric_limits<double>::max();
+  nearest.n_W.setZero();
   FingerLook look(model, state, scratch, finger);
   if (scratch.world.broad_phase) {
     const double reach = look.furthest();
-    scratch.fingers[finger].gap = reach - model.fingers[finger].radius;  // nothing else is nearer
+    nearest.gap = reach - model.fingers[finger].radius;  // nothing else is nearer
     for (const int body : scratch.world.broad_phase->bodiesNear(scratch.world.points[finger].p_mid_W, reach))
       look.at(body);
     return;

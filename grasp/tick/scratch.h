@@ -8,15 +8,21 @@
 
 namespace pincer::grasp {
 
+// A finger's way to the nearest body, in the middle of the tick.
+struct NearestBody {
+  double gap;  // as FingerReport::gap [m]
+  Vec3 n_W;    // towards the finger, of any length; zero: none is near
+  Vec3 d_W;    // from the finger's centre to its own point that is nearest [m]
+};
+
 struct GraspScratch {
   explicit GraspScratch(const GraspModel& model);
   engine::WorldScratch world;
   std::vector<engine::PointInput> inputs;
-  std::vector<Quat> q_mid_WF;         // of the fingers in the middle of the tick
-  std::vector<Vec3> nearest_n_W;      // per finger, towards it from the nearest body, of any length; zero: none is near
-  std::vector<Vec3> nearest_d_W;      // per finger, from its centre to its own point nearest to the nearest body [m]
-  std::vector<FingerReport> fingers;  // of the last tick that was computed
-  std::vector<Quat> orientations;     // of the fingers at its end
+  std::vector<Quat> q_mid_WF;            // of the fingers in the middle of the tick
+  std::vector<NearestBody> nearest;      // per finger; apart from its report, which is written when the tick is done
+  std::vector<FingerReport> fingers;     // of the last tick that was computed
+  std::vector<Quat> orientations;        // of the fingers at its end
   contact::FingerTracker spare_tracker;  // of shapes for which a finger has no place (FollowedShapes)
   // per finger, of the last tick that was computed; empty where no map is asked for
   std::vector<std::vector<Taxel>> taxels;

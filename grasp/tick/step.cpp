@@ -129,12 +129,12 @@ void reportTouch(const GraspModel& model, int finger, const Vec3& touch_W, Grasp
   FingerReport& report = scratch.fingers[finger];
   const bool has_shape = model.fingers[finger].shape.has_value();
   const Quat& q_WF = scratch.q_mid_WF[finger];
-  const Vec3 n_W = -scratch.nearest_n_W[finger];
+  const Vec3 n_W = -scratch.nearest[finger].n_W;
   if (report.touching) {
     report.touch = {true, q_WF, has_shape ? Vec3(report.p_WC - scratch.world.points[finger].p_mid_W) : touch_W,
                     -report.n_W};
   } else if (!n_W.isZero(0)) {
-    report.nearest = {true, q_WF, has_shape ? scratch.nearest_d_W[finger] : n_W, n_W};
+    report.nearest = {true, q_WF, has_shape ? scratch.nearest[finger].d_W : n_W, n_W};
   }
 }
 
@@ -144,6 +144,8 @@ void reportFinger(const GraspModel& model, const GraspState& state, int finger, 
                   GraspScratch& scratch) {
   const double h = scratch.world.h;
   FingerReport& report = scratch.fingers[finger];
+  report = {};
+  report.gap = scratch.nearest[finger].gap;
   const engine::PointScratch& point = scratch.world.points[finger];
   const Vec3 touch_W = sumContacts(contacts, point.p_mid_W, h, report);
   reportTouch(model, finger, touch_W, scratch);
@@ -201,8 +203,7 @@ GraspScratch::GraspScratch(const GraspModel& model)
     : world(model.world),
       inputs(model.fingers.size()),
       q_mid_WF(model.fingers.size(), Quat::Identity()),
-      nearest_n_W(model.fingers.size()),
-      nearest_d_W(model.fingers.size()),
+      nearest(model.fingers.size()),
       fingers(model.fingers.size()),
       orientations(model.fingers.size()),
       taxels(model.fingers.size()) {
