@@ -68,29 +68,24 @@ class FewSearch {
 
   bool tryNewton(const SolverOptions& options) { return finish(options); }
 
-  // Where Newton's method failed.
+  // Where Newton's method failed. Few contacts give way by more than the accuracy only where nothing else is left: what
+  // is pinched would creep. That they may give way means that they were tried without it, and the rounds with them.
   SolveMethod goOn(const SolverOptions& options) {
-    if (isSpent() || (!(options.largest_give > 0) && isSqueezedNow())) return SolveMethod::kNotConverged;
-    // Few contacts try the interior before they give way: what is pinched would creep. That they may means that they
-    // were tried without, and the rounds with them.
+    const double most = options.largest_give;
+    if (isSpent() || (!(most > 0) && isSqueezedNow())) return SolveMethod::kNotConverged;
     const bool is_small = problem_.contactCount() < kManyContacts;
-    if (!is_small || !(options.largest_give > 0)) goOnProximally(options);
+    if (!is_small || !(most > 0)) goOnProximally(options);
     const bool is_squeezed = isSqueezedNow();
     if (isEnough(options) && !is_squeezed) return SolveMethod::kNewton;
-    if ((is_squeezed || !is_small) && giveWay(options)) return SolveMethod::kNewton;
+    if ((is_squeezed || !is_small) && giveWay(options, most)) return SolveMethod::kNewton;
     if (!options.thorough || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
     iterations_ +=
         followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
-    if (finish(options) || giveWay(options)) return SolveMethod::kInteriorPoint;
+    if (finish(options) || giveWay(options, is_small ? std::min(options.accuracy, most) : most))
+      return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
-    if (iterateOnShift(options)) return SolveMethod::kInteriorPoint;
-    scaleSides(unscaled_, scratch_);
-    for (int sweeps = 0; sweeps < patienceOf(options).sweeps && !isSpent(); sweeps += kSweepsPerRound) {
-      restartFromBest();
-      smooth();
-      if (finish(options)) return SolveMethod::kSweeps;
-    }
-    return SolveMethod::kNotConverged;
+    if (!(most > 0) && iterateOnShift(options)) return SolveMethod::kInteriorPoint;
+    return sweepOn(options) || (is_small && giveWay(options, most)) ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
   }
 
   // An answer within the tolerance already, brought to round-off.
@@ -143,6 +138,19 @@ class FewSearch {
 
   bool isSpent() const { return scratch_.operations_left < 0; }
 
+  // By Newton's method from what some sweeps leave. Contacts that may give way get half as many.
+  bool sweepOn(const SolverOptions& options) {
+    const Patience patience = patienceOf(options);
+    const int most = options.largest_give > 0 ? patience.sweeps / 2 : patience.sweeps;
+    scaleSides(unscaled_, scratch_);
+    for (int sweeps = 0; sweeps < most && !isSpent(); sweeps += kSweepsPerRound) {
+      restartFromBest();
+      smooth();
+      if (finish(options)) return true;
+    }
+    return false;
+  }
+
   void goOnProximally(const SolverOptions& options) {
     restartFromBest();
     evaluate(problem_, current_);
@@ -175,16 +183,16 @@ class FewSearch {
     return fastest;
   }
 
-  // True if contacts that contradict each other have an answer if they give way a little.
-  bool giveWay(const SolverOptions& options) {
-    if (!(options.largest_give > 0)) return false;
+  // True if contacts that contradict each other have an answer if they give way by `most` at most [m/s].
+  bool giveWay(const SolverOptions& options, double most) {
+    if (!(most > 0)) return false;
     restartFromBest();
     if (isSqueezedNow()) std::fill(current_.r, current_.r + problem_.rowCount(), 0.0);
     evaluate(problem_, current_);
-    double give = options.largest_give;
+    double give = most;
     iterations_ +=
         iterateGiving(problem_, 0.5 * options.tolerance, kGivingRounds, equations_, scratch_, current_, trial_, give);
-    if (!(give <= options.largest_give)) return false;
+    if (!(give <= most)) return false;
     give_ = give;
     best_.residual = std::numeric_limits<double>::infinity();
     keepBest();

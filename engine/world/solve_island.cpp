@@ -90,17 +90,14 @@ class IslandSolve {
   }
 
   // The gaps of a loop of bodies are fitted to the contacts that pushed in the last tick, once more to the impulses
-  // found if that fails; then contacts give way. Few of them may pinch: they do so by more than the accuracy only
-  // where nothing else is left.
+  // found if that fails; then contacts give way.
   void solveLoop() {
     if (!fitToTurnOfTrees()) fit(PushingBy::kLastTick);
     if (island_.contacts > kFewContacts) return solve(giving(kLargestGive));
     solve(quick());
     if (island_.result.converged) return;
     fit(PushingBy::kImpulses);
-    const bool is_small = island_.contacts < kManyContacts;
-    solveAgain(giving(is_small ? std::min(options_.accuracy, kLargestGive) : kLargestGive));
-    if (is_small && !island_.result.converged) solveAgain(giving(kLargestGive));
+    solveAgain(giving(kLargestGive));
     if (pushesInVain()) solveWithoutPushes();
   }
 
