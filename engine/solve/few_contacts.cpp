@@ -34,11 +34,8 @@ constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the in
 // round-off of their gaps (a mesh at rest in a dish) have no better answer, and 10 nm/s is far below anything felt
 constexpr double kContentSpeed = 1e-8;
 
-// slip  the fastest of what pushes [m/s]: in motion an error doesn't show that is a small share of it
-double contentResidual(const SolverOptions& options, double slip, double reference_speed) {
-  if (options.accuracy == 0) return options.tolerance;
-  const double in_motion = std::min(kShareOfSlip * slip, options.accuracy);
-  return std::max(kContentSpeed, std::max(kContentSpeed, in_motion) / reference_speed);
+double contentResidual(const SolverOptions& options, double reference_speed) {
+  return options.accuracy > 0 ? std::max(kContentSpeed, kContentSpeed / reference_speed) : options.tolerance;
 }
 
 // The iterates of one solve, in scaled variables.
@@ -138,12 +135,10 @@ class FewSearch {
 
   bool isSpent() const { return scratch_.operations_left < 0; }
 
-  // By Newton's method from what some sweeps leave. Contacts that may give way get half as many.
+  // By Newton's method from what some sweeps leave.
   bool sweepOn(const SolverOptions& options) {
-    const Patience patience = patienceOf(options);
-    const int most = options.largest_give > 0 ? patience.sweeps / 2 : patience.sweeps;
     scaleSides(unscaled_, scratch_);
-    for (int sweeps = 0; sweeps < most && !isSpent(); sweeps += kSweepsPerRound) {
+    for (int sweeps = 0; sweeps < patienceOf(options).sweeps && !isSpent(); sweeps += kSweepsPerRound) {
       restartFromBest();
       smooth();
       if (finish(options)) return true;
@@ -170,17 +165,7 @@ class FewSearch {
     return isEnough(options) && !(options.largest_give > 0 && isSqueezedNow());
   }
   bool isEnough(const SolverOptions& options) const {
-    return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, slip(), problem_.speed));
-  }
-  // The best iterate's, of what pushes [m/s].
-  double slip() const {
-    double fastest = 0;
-    for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i);
-      if (!(best_.r[first + kNormalRow] > 0)) continue;
-      fastest = std::max(fastest, problem_.scale[i] * std::sqrt(tangentNorm2(best_.u + first, problem_.rows(i))));
-    }
-    return fastest;
+    return best_.residual <= std::max(0.5 * options.tolerance, contentResidual(options, problem_.speed));
   }
 
   // True if contacts that contradict each other have an answer if they give way by `most` at most [m/s].
@@ -272,8 +257,7 @@ void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, E
 // A point between walls that nothing else solved: `r`, `u` and `result` are as they were unless this does.
 void tryPointProblem(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r,
                      double* u, SolveResult& result) {
-  const double content = contentResidual(options, fastestSlip(problem, r, u), referenceSpeed(problem));
-  const double enough = std::max(options.tolerance, content);
+  const double enough = std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
   if (!solvePointProblem(problem, enough, scratch, r, u, result.residual)) return;
   result.method = SolveMethod::kSweeps;
   result.converged = true;
@@ -303,8 +287,8 @@ void solveFewContacts(const ContactProblem& problem, const SolverOptions& option
   const ContactError error = errorOf(problem, r, scratch, u);
   result.residual = error.residual;
   result.error = error.speed;
-  const double content = contentResidual(options, fastestSlip(problem, r, u), referenceSpeed(problem));
-  result.converged = result.converged && error.residual <= std::max(options.tolerance, content);
+  result.converged = result.converged &&
+                     error.residual <= std::max(options.tolerance, contentResidual(options, referenceSpeed(problem)));
   if (!result.converged) result.method = SolveMethod::kNotConverged;
   if (!result.converged && isPointProblem(problem)) tryPointProblem(problem, options, scratch, r, u, result);
   if (isSqueezed(problem, scratch.weight, r)) yieldToWalls(problem, options, form, scratch, r, u, result);

@@ -45,15 +45,6 @@ double referenceSpeed(const ContactProblem& problem) {
   return speed;
 }
 
-double fastestSlip(const ContactProblem& problem, const double* r, const double* u) {
-  double fastest2 = 0;
-  for (int i = 0; i < problem.contactCount(); ++i) {
-    const int first = problem.firstRow(i);
-    if (r[first + kNormalRow] > 0) fastest2 = std::max(fastest2, tangentNorm2(u + first, problem.rows(i)));
-  }
-  return std::sqrt(fastest2);
-}
-
 void respond(const ContactProblem& problem, const double* r, SolverScratch& scratch) {
   double* const y = scratch.y.data();
   std::fill(y, y + kMoverFreedoms * problem.movers, 0.0);

@@ -71,11 +71,6 @@ inline ContactError errorOf(const ContactProblem& problem, const double* r, Solv
 // max(|q|_inf, kVelocityFloor) [m/s].
 double referenceSpeed(const ContactProblem& problem);
 
-// Of the fastest slip of what pushes: errors below don't show in motion.
-constexpr double kShareOfSlip = 3e-4;
-// That slip, of impulses r and velocities u [m/s].
-double fastestSlip(const ContactProblem& problem, const double* r, const double* u);
-
 // Of the tolerance: what a strict problem asks of its warm start.
 constexpr double kStrictness = 1e-4;
 

@@ -25,6 +25,7 @@ constexpr double kMostlyGive = 0.3;                   // of a descent's error: a
 constexpr int kEasySteps = 3, kMostRoundSteps = 8;    // of a round
 constexpr int kDescents = 6, kMostDescentSteps = 30;  // at a time; of one
 constexpr double kFar = 1e-3;                         // from which rounds fail more often than not [m/s]
+constexpr double kShareOfSlip = 3e-4;                 // of what pushes: below it, in motion, errors don't show
 constexpr double kSliding = 0.05;                     // of the problem's speeds: what slips faster is swept
 constexpr double kStillFading = 0.7;                  // of an error or a give, from one time to the next
 constexpr int kSweepsAtATime = 8;                     // at a time
@@ -37,6 +38,16 @@ constexpr int kHitSolves = 4;                           // that share what a tic
 constexpr int kPolishRounds = 3;                        // of what is quiet, on to round-off
 constexpr double kPolishEpsilon = 1e-4;                 // epsilon of these rounds
 constexpr double kQuiet = 1e-3;                         // of the problem's speeds: what slips less is about to rest
+
+// The fastest slip of what pushes [m/s].
+double fastestSlip(const ContactProblem& problem, const double* r, const double* u) {
+  double fastest2 = 0;
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const int first = problem.firstRow(i);
+    if (r[first + kNormalRow] > 0) fastest2 = std::max(fastest2, tangentNorm2(u + first, problem.rows(i)));
+  }
+  return std::sqrt(fastest2);
+}
 
 class Search {
  public:
