@@ -37,13 +37,14 @@ class ConeFinder {
         for (const int corner : {i, (i + 1) % 3}) kindAt(t, corner) = std::max(kindAt(t, corner), kind);
       }
     }
+    has_few_wide_ = hasFewWide();
   }
 
   // The patch's own normals, and those of its sharp edges and corners but where these are apart.
   NormalCone onFace(std::int32_t t, const Patch& p) {
     normals_ = {p.n200, p.n020, p.n002, p.n110, p.n011, p.n101, facetOf(t)};
     for (int i = 0; i < 3; ++i) {
-      if (kindAt(t, i) == kSharp && !isWideAt(t, i)) addNormalsAt(t, i);
+      if (kindAt(t, i) == kSharp && !(has_few_wide_ && isWideAt(t, i))) addNormalsAt(t, i);
       const Neighbour other = net_.neighbour(t, i);
       if (net_.isSharp(t, i) && other.triangle >= 0 && !isApart(t, i, other)) addSide(other.triangle, other.edge);
     }
@@ -57,13 +58,9 @@ class ConeFinder {
     for (const int corner : {i, (i + 1) % 3}) addNormalsAt(t, corner);
     return coneBeside(t, {i, (i + 1) % 3});
   }
-  // True if the normals there are too many directions for the patches beside to be gentle (lone_contact.h) with them.
-  bool isApart(std::int32_t t, int i, Neighbour other) const {
-    std::array<Vec3, 4> sides = {net_.normal(t, i), net_.normal(t, (i + 1) % 3),
-                                 net_.normal(other.triangle, other.edge),
-                                 net_.normal(other.triangle, (other.edge + 1) % 3)};
-    return isWide(sides) || isWideAt(t, i) || isWideAt(t, (i + 1) % 3);
-  }
+  // True if the normals there are too many directions for the patches beside to be gentle (lone_contact.h) with them,
+  // and such edges are so few that each may be a part of its own.
+  bool isApart(std::int32_t t, int i, Neighbour other) const { return has_few_wide_ && isWideOn(t, i, other); }
   bool hasBorder() const { return has_border_; }  // among what was looked at
 
  private:
@@ -87,6 +84,25 @@ class ConeFinder {
   void addNormalsAt(std::int32_t t, int corner) {
     net_.visitCorners({t, corner}, [&](const CellCorner& c) { addNormal(net_.normal(c.triangle, c.corner)); });
   }
+  bool isWideOn(std::int32_t t, int i, Neighbour other) const {
+    std::array<Vec3, 4> sides = {net_.normal(t, i), net_.normal(t, (i + 1) % 3),
+                                 net_.normal(other.triangle, other.edge),
+                                 net_.normal(other.triangle, (other.edge + 1) % 3)};
+    return isWide(sides) || isWideAt(t, i) || isWideAt(t, (i + 1) % 3);
+  }
+  // Memory is promised per triangle: of a rough mesh, where nearly all edges are sharp, none is a part of its own.
+  bool hasFewWide() const {
+    constexpr std::int32_t kAlwaysFew = 4096;  // edges: 0.3 MB at most
+    const std::int32_t most = std::max(kAlwaysFew, net_.size() / 10);
+    std::int32_t wide = 0;
+    for (std::int32_t t = 0; t < net_.size() && wide <= most; ++t) {
+      for (int i = 0; i < 3; ++i) {
+        const Neighbour other = net_.neighbour(t, i);
+        wide += other.triangle > t && net_.isSharp(t, i) && isWideOn(t, i, other);
+      }
+    }
+    return wide <= most;
+  }
   static bool isWide(std::span<const Vec3> normals) { return !(coneOf(normals).cosine >= LoneContact::kCosBeta); }
   bool isWideAt(std::int32_t t, int corner) const {
     std::vector<Vec3> normals;
@@ -102,6 +118,7 @@ class ConeFinder {
   std::vector<char> kind_;  // per vertex
   std::vector<Vec3> normals_;
   bool has_border_ = false;
+  bool has_few_wide_ = false;
 };
 
 bool isConcave(const SurfaceNet& net, std::int32_t t, int i, Neighbour other) {

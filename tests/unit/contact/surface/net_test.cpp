@@ -155,17 +155,12 @@ TEST(EdgeCubic, MiddleNormalIsTheSameFromBothEnds) {
 }
 
 // Memory of a triangle that nothing has touched: its share of vertices,
-// numbers, neighbours, normals, tree and hull; of a sharp edge: its part in the tree.
+// numbers, neighbours, normals, tree and hull.
 TEST(SurfaceNet, KeepsAtMost160BytesPerUntouchedTriangle) {
   for (const TriangleMesh& mesh : {icosphere(0.02, 5), torus(0.03, 0.012, 100, 50), roundedCube(0.02, 0.004, 20),
                                    gridBox({0.02, 0.02, 0.02}, 20), noisy(icosphere(0.02, 4), 1e-3, 1)}) {
     const auto object = SmoothMesh::build(mesh);
-    const SurfaceNet net(mesh, kCreaseAngle, true);
-    std::size_t sharp = 0;
-    for (std::int32_t t = 0; t < net.size(); ++t) {
-      for (int i = 0; i < 3; ++i) sharp += net.isSharp(t, i);
-    }
-    EXPECT_LE(object->memoryBytes(), 160 * mesh.triangles.size() + 80 * sharp / 2) << mesh.source;
+    EXPECT_LE(object->memoryBytes(), 160 * mesh.triangles.size()) << mesh.source;
   }
 }
 
