@@ -6,10 +6,11 @@
 // isn't a bowl about that point, and no more of a fine mesh than of a coarse one. A patch's cone holds its shading
 // normals and its facet's, and those of sharp edges and their ends, for contact there may have any normal between their
 // sides; at borders it may be any at all. An edge whose normals spread by more than 30 degrees is a part of its own,
-// unless there are so many that they would double the memory: else each patch between two rims would face everything. Within a leaf a part is skipped by its own ball and cone,
-// then by its flat triangle less the patch's bulge (C. Ericson, "Real-Time Collision Detection", 2005, section 5.1.5);
-// what is left is evaluated over the triangle's closest point. Where all local minima of the distance are wanted, a
-// triangle counts only if its closest point is one of the flat mesh: no neighbour leads nearer.
+// unless there are so many that they would double the memory: else each patch between two rims would face everything.
+// Within a leaf a part is skipped by its own ball and cone, then by its flat triangle less the patch's bulge (C.
+// Ericson, "Real-Time Collision Detection", 2005, section 5.1.5); what is left is evaluated over the triangle's
+// closest point. Where all local minima of the distance are wanted, a triangle counts only if its closest point is one
+// of the flat mesh: no neighbour leads nearer.
 #pragma once
 #include <array>
 #include <cstdint>
