@@ -112,9 +112,9 @@ double between(double low, double high, double alpha, double magnitude) {
 // Leaves `problem` at the alpha > 0 for which the impulse is on the cone's surface. f is nearly a line: three or four
 // steps from the first guess. Returns how many.
 template <int D>
-int findSlide(TangentProblem<D>& problem) {
+int findSlide(TangentProblem<D>& problem, double& alpha) {
   double low = 0, high = std::numeric_limits<double>::infinity();
-  double alpha = problem.firstAlpha();
+  alpha = problem.firstAlpha();
   for (int i = 0; i < kAlphaSteps; ++i) {
     problem.setAlpha(alpha);
     double slope;
@@ -129,15 +129,31 @@ int findSlide(TangentProblem<D>& problem) {
       return i + 1;
     }
   }
-  problem.setAlpha(high < std::numeric_limits<double>::infinity() ? high : alpha);
+  if (high < std::numeric_limits<double>::infinity()) alpha = high;
+  problem.setAlpha(alpha);
   return kAlphaSteps;
 }
 
+// One step of that from the alpha of a problem nearby. False if it leads far away.
 template <int D>
-int solvePressed(const double* W, int stride, const double* q, double mu, double* r) {
+bool followSlide(TangentProblem<D>& problem, double& alpha) {
+  constexpr double kNearby = 4;  // times as much or as little, chosen
+  problem.setAlpha(alpha);
+  double slope;
+  const double f = problem.excess(slope), next = alpha - f / slope;
+  if (!(kNearby * next > alpha && next < kNearby * alpha)) return false;
+  problem.setAlpha(alpha = next);
+  return true;
+}
+
+template <int D>
+int solvePressed(const double* W, int stride, const double* q, double mu, double* r, double& alpha) {
   TangentProblem<D> problem(W, stride, q, mu);
-  problem.setAlpha(0);
-  const int steps = problem.isInDisc() ? 0 : findSlide(problem);
+  int steps = alpha > 0 && followSlide(problem, alpha) ? 1 : 0;
+  if (steps == 0) {
+    problem.setAlpha(alpha = 0);
+    if (!problem.isInDisc()) steps = findSlide(problem, alpha);
+  }
   problem.write(r);
   return steps;
 }
@@ -152,6 +168,11 @@ bool isIsotropic(const double* W, int stride) {
 }
 
 int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r) {
+  double alpha = 0;
+  return followOneContact(W, stride, q, rows, mu, r, alpha);
+}
+
+int followOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r, double& alpha) {
   std::fill(r, r + rows, 0.0);
   if (!(q[kNormalRow] < 0)) return 0;
   if (mu == 0) {
@@ -163,9 +184,9 @@ int solveOneContact(const double* W, int stride, const double* q, int rows, doub
     limitFriction(mu, r);
     return 0;
   }
-  if (rows == kTorsionRow) return solvePressed<2>(W, stride, q, mu, r);
-  if (rows == kRollingRow) return solvePressed<3>(W, stride, q, mu, r);
-  return solvePressed<5>(W, stride, q, mu, r);
+  if (rows == kTorsionRow) return solvePressed<2>(W, stride, q, mu, r, alpha);
+  if (rows == kRollingRow) return solvePressed<3>(W, stride, q, mu, r, alpha);
+  return solvePressed<5>(W, stride, q, mu, r, alpha);
 }
 
 }  // namespace pincer::engine

@@ -41,4 +41,8 @@ bool isIsotropic(const double* W, int stride);
 // Returns how many steps the search for alpha took.
 int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r);
 
+// The same for one of a row of problems that hardly differ, as of a contact from sweep to sweep: by one step from
+// `alpha` [kg^-1], that of the problem before; 0: of none, or it didn't slide. alpha becomes this problem's.
+int followOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r, double& alpha);
+
 }  // namespace pincer::engine

@@ -18,6 +18,8 @@ namespace {
 constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
 constexpr double kEpsilonOfError = 1e3;               // the first is that times the start's error [s/m]
 constexpr double kEasier = 0.2, kHarder = 5;          // epsilon after a short round, after one that failed
+constexpr double kEasierInMotion = 0.4;               // and where a round that overshoots gains nothing:
+constexpr double kMotion = 1e4;                       // where something slips faster than so many times the accuracy
 constexpr double kLeft = 0.1;                         // of what is enough: a round's own error
 constexpr double kFirstDescent = 1e-2;                // epsilon of descents, at most
 constexpr double kRough = 1e-2;                       // of the start's error: a descent's own
@@ -34,7 +36,7 @@ constexpr std::int64_t kPerContactLooked = 150;         // multiplications
 constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 ms
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
 constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
-constexpr int kHitSolves = 4;                           // that share what a tick's hits may take
+constexpr int kHitSolves = 12;                          // that share what a tick's hits may take
 constexpr int kPolishRounds = 3;                        // of what is quiet, on to round-off
 constexpr double kPolishEpsilon = 1e-4;                 // epsilon of these rounds
 constexpr double kQuiet = 1e-3;                         // of the problem's speeds: what slips less is about to rest
@@ -172,6 +174,8 @@ class Search {
   }
 
   bool isFar() const { return best_.speed > kFar; }
+  bool moves() const { return options_.accuracy > 0 && slip_ > kMotion * options_.accuracy; }
+  double easier() const { return moves() ? kEasierInMotion : kEasier; }
   bool slides() const { return slip_ > kSliding * referenceSpeed(problem_); }
 
   // To where rounds succeed: what slides by sweeps, as long as they get on; then by descents.
@@ -246,7 +250,7 @@ class Search {
         continue;
       }
       if (result_.iterations - before <= kEasySteps || error_.speed > kStillFading * last_error)
-        epsilon = std::max(kLeastEpsilon, kEasier * epsilon);
+        epsilon = std::max(kLeastEpsilon, easier() * epsilon);
     }
   }
 

@@ -74,7 +74,7 @@ void Sweeps::fillTerms(int i) {
   }
   const bool is_isotropic = rows == kTorsionRow && isIsotropic(W, rows);
   terms[0] = is_isotropic ? 1 / W[0] : 0;
-  terms[1] = 1 / W[kNormalRow * (rows + 1)];
+  terms[1] = is_isotropic ? 1 / W[kNormalRow * (rows + 1)] : 0;
   if (!is_isotropic) invertOwn(rows, W, inverse);
 }
 
@@ -117,7 +117,8 @@ void Sweeps::relax(int i) {
 template <class Rows>
 [[gnu::always_inline]] inline double Sweeps::solveOwn(int i, std::span<const ContactSide>, Rows rows, double* u,
                                                       double* r) {
-  const double *const terms = termsOf(i), *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
+  double* const terms = termsOf(i);
+  const double *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   const double* const r_i = r_ + problem_.firstRow(i);
   const double mu = problem_.friction(i);
   if (terms[0] > 0) {
@@ -128,11 +129,11 @@ template <class Rows>
     r[k] = r_i[k];
     for (int l = 0; l < rows; ++l) r[k] -= inverse[rows * l + k] * u[l];
   }
-  if (isInCone(r, rows, mu)) return 0;  // it sticks
+  if (isInCone(r, rows, mu)) return terms[1] = 0;  // it sticks
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) u[k] -= W[rows * l + k] * r_i[l];
   }
-  slide_steps_ += solveOneContact(W, rows, u, rows, mu, r);
+  slide_steps_ += followOneContact(W, rows, u, rows, mu, r, terms[1]);
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) u[k] += W[rows * l + k] * r[l];
   }

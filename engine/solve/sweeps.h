@@ -49,8 +49,9 @@ class Sweeps {
   const ContactProblem& problem_;
   double* const r_;
   double* const y_;
-  static constexpr int kTermsBefore = 2;  // numbers before the matrices: 1 / W_tt, 1 / W_nn
-  // per contact: of isotropic ones 1 / W_tt, 0 of others; 1 / W_nn; the inverse of W_ii, of others; W_ii
+  static constexpr int kTermsBefore = 2;  // numbers before the matrices
+  // per contact: of isotropic ones 1 / W_tt and 1 / W_nn; of others 0, the alpha of their last slide (local_contact.h),
+  // the inverse of W_ii; W_ii
   double* const terms_;
   int stride_;
   double *const change_, *const way_;      // z and p
