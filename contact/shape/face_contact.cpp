@@ -22,16 +22,19 @@ class OverFace {
     const Vec3 ahead = over_solid.inwards(-n_);
     facetOf(over_solid.shape, ahead, over_);
     const double plane = base.n.dot(base.corners[0].p);
-    const auto seen = [&](const Vec3& p) { return base_solid.inwards(over_solid.place(p) - base_solid.p); };
-    lowest_ = base.n.dot(seen(supportOf(over_solid.shape, ahead))) - plane;
-    std::array<Vec3, Facet::kMost> corners;
+    double lowest_corner = kInfinity;
     for (int i = 0; i < over_.count; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      corners[at] = seen(over_.corners[at].p);
-      heights_[at] = base.n.dot(corners[at]) - plane;
+      places_[at] = over_solid.place(over_.corners[at].p);
+      seen_[at] = seen(places_[at]);
+      heights_[at] = base.n.dot(seen_[at]) - plane;
       highest_ = std::max(highest_, heights_[at]);
+      lowest_corner = std::min(lowest_corner, heights_[at]);
     }
-    noteInside(corners.data());
+    // A face with all of its corners holds its lowest point.
+    const bool is_whole = over_.count > 2 && over_.count <= kMostCorners && !(over_.rim_radius > 0);
+    lowest_ = is_whole ? lowest_corner : base.n.dot(seen(over_solid.place(supportOf(over_solid.shape, ahead)))) - plane;
+    noteInside();
   }
 
   // A lowest point lies over the base; or would, if the two facets share a place.
@@ -49,7 +52,7 @@ class OverFace {
       const FacetCorner& corner = over_.corners[static_cast<std::size_t>(i)];
       const double height = heights_[static_cast<std::size_t>(i)], phi = height - rounding - base_rounding;
       if (!(phi < margin)) continue;
-      const Vec3 p = over_solid_.place(corner.p) - 0.5 * (height + rounding - base_rounding) * n_;
+      const Vec3 p = places_[static_cast<std::size_t>(i)] - 0.5 * (height + rounding - base_rounding) * n_;
       out.points[static_cast<std::size_t>(out.count++)] = {p, n, phi, featureOfCorner(are_of_a, corner.vertex)};
     }
     std::sort(out.points.begin(), out.points.begin() + out.count,
@@ -59,21 +62,30 @@ class OverFace {
  private:
   bool isLowest(double height, double size) const { return lowest_ > 0 && height - lowest_ <= kLowestRounding * size; }
 
-  // Which corners are over the base; edge by edge, each of which is measured once.
-  void noteInside(const Vec3* corners) {
+  // In the base's frame.
+  Vec3 seen(const Vec3& p) const { return base_solid_.inwards(p - base_solid_.p); }
+
+  // Which corners are over the base; edge by edge, each of which is measured once. Number by number: a sixteenth of
+  // a pad's look is one corner and one edge.
+  void noteInside() {
+    const int count = over_.count;
     std::array<bool, Facet::kMost> is_inside;
-    std::fill(is_inside.begin(), is_inside.begin() + over_.count, true);
+    std::fill(is_inside.begin(), is_inside.begin() + count, true);
+    const Vec3& n = base_.n;
     const Vec3* from = &base_.corners[static_cast<std::size_t>(base_.count - 1)].p;
     for (int k = 0; k < base_.count; ++k) {
       const Vec3& to = base_.corners[static_cast<std::size_t>(k)].p;
-      const Vec3 inwards = base_.n.cross(to - *from);
-      for (int i = 0; i < over_.count; ++i) {
+      const double fx = from->x(), fy = from->y(), fz = from->z();
+      const double ex = to.x() - fx, ey = to.y() - fy, ez = to.z() - fz;
+      const double ix = n.y() * ez - n.z() * ey, iy = n.z() * ex - n.x() * ez, iz = n.x() * ey - n.y() * ex;
+      for (int i = 0; i < count; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        is_inside[at] = is_inside[at] && inwards.dot(corners[at] - *from) >= 0;
+        const Vec3& c = seen_[at];
+        is_inside[at] &= (ix * (c.x() - fx) + iy * (c.y() - fy)) + iz * (c.z() - fz) >= 0;
       }
       from = &to;
     }
-    for (int i = 0; i < over_.count; ++i) {
+    for (int i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
       if (is_inside[at]) lowest_inside_ = std::min(lowest_inside_, heights_[at]);
       all_inside_ = all_inside_ && is_inside[at];
@@ -85,7 +97,8 @@ class OverFace {
   const Facet& base_;
   const Vec3 n_;
   Facet over_;
-  std::array<double, Facet::kMost> heights_;  // over the base's plane [m]
+  std::array<Vec3, Facet::kMost> places_, seen_;  // of its corners, and in the base's frame
+  std::array<double, Facet::kMost> heights_;      // over the base's plane [m]
   double lowest_ = kInfinity, lowest_inside_ = kInfinity, highest_ = -kInfinity;
   bool all_inside_ = true;
 };

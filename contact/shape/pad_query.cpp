@@ -62,16 +62,24 @@ class PadQuery {
     return found;
   }
 
+  static bool isBefore(const PairPoint& x, const PairPoint& y) {
+    return x.phi < y.phi || (x.phi == y.phi && x.feature < y.feature);
+  }
   // The deepest first; of more than there is room for the deepest.
-  static FingerContacts contactsOf(PairPoints& patch) {
-    std::sort(patch.points.begin(), patch.points.begin() + patch.count, [](const PairPoint& x, const PairPoint& y) {
-      return x.phi < y.phi || (x.phi == y.phi && x.feature < y.feature);
-    });
+  static FingerContacts contactsOf(const PairPoints& patch) {
+    std::array<const PairPoint*, kMaxPairPoints> order;
+    int sorted = 0;
+    for (; sorted < patch.count; ++sorted) {
+      const PairPoint* const p = &patch.points[static_cast<std::size_t>(sorted)];
+      auto at = static_cast<std::size_t>(sorted);
+      for (; at > 0 && isBefore(*p, *order[at - 1]); --at) order[at] = order[at - 1];
+      order[at] = p;
+    }
     FingerContacts found;
     found.queries = 1;
     const int count = std::min(patch.count, kMaxFingerContacts);
     for (int i = 0; i < count; ++i) {
-      const PairPoint& p = patch.points[static_cast<std::size_t>(i)];
+      const PairPoint& p = *order[static_cast<std::size_t>(i)];
       add({p.p_W - 0.5 * p.phi * p.n_W, p.n_W, p.phi, p.feature}, found);
     }
     return found;

@@ -39,7 +39,7 @@ bool removeAddedEnergy(const ContactProblem& problem, double* r, const double* u
 
 void solveFew(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
               SolveResult& result) {
-  if (solvePadProblem(problem, options, scratch, r, u, result)) return;
+  if (!problem.declined_grip && solvePadProblem(problem, options, scratch, r, u, result)) return;
   weighContacts(problem, scratch);
   const ContactError start = errorOf(problem, r, scratch, u);
   result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};

@@ -1,47 +1,38 @@
 #include "pincer/engine/solve/pad_problem.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/inverse3.h"
+#include "pincer/engine/solve/lanes.h"
 #include "pincer/engine/solve/linear.h"
 #include "pincer/engine/solve/mobility.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/squeeze.h"
 #include "pincer/engine/solve/stuck_contacts.h"
+#include "pincer/engine/solve/stuck_steps.h"
 
 namespace pincer::engine {
 namespace {
 
 constexpr int kMostPoints = 4, kMostContacts = 16, kFewestContacts = 4;
-constexpr int kGroups = kMostPoints + 1;             // the last is of contacts without a point
-constexpr int kLanes = kMostContacts + kGroups + 1;  // a group begins at an even one
-constexpr int kRows = kTorsionRow, kPointFreedoms = 3;
+constexpr int kGroups = kMostPoints + 1;                // the last is of contacts without a point
+constexpr int kPadLanes = kMostContacts + kGroups + 1;  // a group begins at an even one
+constexpr int kPadRows = kTorsionRow, kPointFreedoms = 3;
 
-using Lanes = double[kLanes];
-constexpr Lanes kNone[kRows] = {};
-
-template <int n, class Act>
-[[gnu::always_inline]] inline void times(const Act& act) {
-  [&]<int... k>(std::integer_sequence<int, k...>) { (act(std::integral_constant<int, k>()), ...); }
-  (std::make_integer_sequence<int, n>());
-}
-
-inline DoublePair& pairAt(double* p) { return *reinterpret_cast<DoublePair*>(p); }
-inline const DoublePair& pairAt(const double* p) { return *reinterpret_cast<const DoublePair*>(p); }
-inline double sumOf(DoublePair pair) { return pair[0] + pair[1]; }
+using Lanes = double[kPadLanes];
+constexpr Lanes kNone[kPadRows] = {};
 
 // One block of A per kind of mover.
 template <int freedoms>
-using Blocks = Lanes[kRows][freedoms];
+using Blocks = Lanes[kPadRows][freedoms];
 
 // sums[k] = sum over lanes [from, to) and rows of  x[row][k] y[row]
 template <int freedoms>
-inline void addProducts(const Blocks<freedoms>& x, const Lanes (&y)[kRows], int from, int to, double* sums) {
+inline void addProducts(const Blocks<freedoms>& x, const Lanes (&y)[kPadRows], int from, int to, double* sums) {
   DoublePair sum[freedoms];
   times<freedoms>([&](auto k) { sum[k] = DoublePair{0, 0}; });
-  times<kRows>([&](auto l) {
+  times<kPadRows>([&](auto l) {
     for (int i = from; i < to; i += 2) {
       const DoublePair y_i = pairAt(y[l] + i);
       times<freedoms>([&](auto k) { sum[k] += pairAt(x[l][k] + i) * y_i; });
@@ -52,11 +43,11 @@ inline void addProducts(const Blocks<freedoms>& x, const Lanes (&y)[kRows], int 
 
 // out[row] = in[row] + sum over k of  x[row][k] y[k]
 template <int freedoms>
-inline void addImages(const Blocks<freedoms>& x, const double* y, int from, int to, const Lanes (&in)[kRows],
-                      Lanes (&out)[kRows]) {
+inline void addImages(const Blocks<freedoms>& x, const double* y, int from, int to, const Lanes (&in)[kPadRows],
+                      Lanes (&out)[kPadRows]) {
   DoublePair Y[freedoms];
   times<freedoms>([&](auto k) { Y[k] = DoublePair{y[k], y[k]}; });
-  times<kRows>([&](auto l) {
+  times<kPadRows>([&](auto l) {
     for (int i = from; i < to; i += 2) {
       DoublePair sum = pairAt(in[l] + i);
       times<freedoms>([&](auto k) { sum += pairAt(x[l][k] + i) * Y[k]; });
@@ -70,7 +61,7 @@ template <int freedoms, int first, int columns>
 inline void addColumn(const Blocks<freedoms>& x, const Blocks<columns>& y, int column, int from, int to, double* out) {
   DoublePair sum[freedoms - first];
   times<freedoms - first>([&](auto k) { sum[k] = DoublePair{0, 0}; });
-  times<kRows>([&](auto l) {
+  times<kPadRows>([&](auto l) {
     for (int i = from; i < to; i += 2) {
       const DoublePair y_i = pairAt(y[l][column] + i);
       times<freedoms - first>([&](auto k) { sum[k] += pairAt(x[l][first + k] + i) * y_i; });
@@ -100,8 +91,8 @@ class PadProblem {
     setVelocities(q_, u_);
     WorstResidual worst;
     forEachContact([&](int i) {
-      const double r[kRows] = {r_[0][i], r_[1][i], r_[2][i]}, u[kRows] = {u_[0][i], u_[1][i], u_[2][i]};
-      worst.add(naturalMap2(r, u, kRows, mu_[i], w_[i]), u[kNormalRow], w_[i] * r[kNormalRow]);
+      const double r[kPadRows] = {r_[0][i], r_[1][i], r_[2][i]}, u[kPadRows] = {u_[0][i], u_[1][i], u_[2][i]};
+      worst.add(naturalMap2(r, u, kPadRows, mu_[i], w_[i]), u[kNormalRow], w_[i] * r[kNormalRow]);
     });
     return worst.relativeTo(speed_);
   }
@@ -113,32 +104,32 @@ class PadProblem {
   bool allStayAsTheyAre() const {
     bool all = true;
     forEachContact([&](int i) {
-      double y[kRows];
-      for (int k = 0; k < kRows; ++k) y[k] = w_[i] * r_[k][i] - u_[k][i];
-      all = all && contactMode(y, kRows, mu_[i]) == (holds_[i] ? ContactMode::kStick : ContactMode::kOpen);
+      double y[kPadRows];
+      for (int k = 0; k < kPadRows; ++k) y[k] = w_[i] * r_[k][i] - u_[k][i];
+      all = all && contactMode(y, kPadRows, mu_[i]) == (holds_[i] ? ContactMode::kStick : ContactMode::kOpen);
     });
     return all;
   }
   bool holdsWith(double share) const {
     bool all = true;
     forEachContact([&](int i) {
-      const double r[kRows] = {r_[0][i], r_[1][i], r_[2][i]};
-      all = all && (!holds_[i] || (r[kNormalRow] > 0 && isInCone(r, kRows, share * mu_[i])));
+      const double r[kPadRows] = {r_[0][i], r_[1][i], r_[2][i]};
+      all = all && (!holds_[i] || (r[kNormalRow] > 0 && isInCone(r, kPadRows, share * mu_[i])));
     });
     return all;
   }
   bool maySqueeze() const {
     double largest = 0;
-    forEachContact([&](int i) { largest = std::max(largest, kRows * w_[i] * r_[kNormalRow][i]); });
+    forEachContact([&](int i) { largest = std::max(largest, kPadRows * w_[i] * r_[kNormalRow][i]); });
     return largest > kLargestSqueeze * speed_;
   }
 
   // A step from r and u. False if there is none.
   bool step() {
-    Lanes change[kRows];
-    for (int k = 0; k < kRows; ++k) std::fill(change[k], change[k] + lanes(), 0.0);
+    Lanes change[kPadRows];
+    for (int k = 0; k < kPadRows; ++k) std::fill(change[k], change[k] + lanes(), 0.0);
     forEachContact([&](int i) {
-      for (int k = 0; k < kRows; ++k) change[k][i] = holds_[i] ? -u_[k][i] : 0;
+      for (int k = 0; k < kPadRows; ++k) change[k][i] = holds_[i] ? -u_[k][i] : 0;
     });
     respond(change);
     if (!factorise()) return false;
@@ -146,16 +137,16 @@ class PadProblem {
     solve();
     setVelocities(kNone, change);
     forEachContact([&](int i) {
-      for (int k = 0; k < kRows && holds_[i]; ++k) r_[k][i] += change[k][i];
+      for (int k = 0; k < kPadRows && holds_[i]; ++k) r_[k][i] += change[k][i];
     });
     return true;
   }
 
   void write(double* r, double* u) const {
     for (int n = 0; n < n_; ++n) {
-      for (int k = 0; k < kRows; ++k) {
-        r[kRows * n + k] = r_[k][lane_[n]];
-        u[kRows * n + k] = u_[k][lane_[n]];
+      for (int k = 0; k < kPadRows; ++k) {
+        r[kPadRows * n + k] = r_[k][lane_[n]];
+        u[kPadRows * n + k] = u_[k][lane_[n]];
       }
     }
   }
@@ -166,7 +157,7 @@ class PadProblem {
   bool findMovers(const ContactProblem& problem) {
     const int n = problem.contactCount();
     if (n < kFewestContacts || n > kMostContacts || problem.movers > kGroups) return false;
-    if (!problem.first_side.empty() || problem.rowCount() != kRows * n) return false;
+    if (!problem.first_side.empty() || problem.rowCount() != kPadRows * n) return false;
     int body = -1, points = 0, group_of[kGroups], count[kGroups] = {};
     std::fill(group_of, group_of + kGroups, -1);
     for (int i = 0; i < n; ++i) {
@@ -199,22 +190,22 @@ class PadProblem {
     const int i = lane_[n] = end_[group_[n]]++;
     for (const ContactSide& side : problem.sidesOf(n)) {
       if (side.mover < 0) continue;
-      times<kRows>([&](auto l) {
+      times<kPadRows>([&](auto l) {
         if (side.is_point)
           times<kPointFreedoms>([&](auto k) { point_[l][k][i] = side.A[l][k]; });
         else
           times<kMoverFreedoms>([&](auto k) { body_[l][k][i] = side.A[l][k]; });
       });
     }
-    for (int l = 0; l < kRows; ++l) {
-      q_[l][i] = problem.q.data()[kRows * n + l];
-      r_[l][i] = r[kRows * n + l];
+    for (int l = 0; l < kPadRows; ++l) {
+      q_[l][i] = problem.q.data()[kPadRows * n + l];
+      r_[l][i] = r[kPadRows * n + l];
     }
     mu_[i] = problem.friction(n);
   }
 
   void clearLane(int i) {
-    for (int l = 0; l < kRows; ++l) {
+    for (int l = 0; l < kPadRows; ++l) {
       for (int k = 0; k < kMoverFreedoms; ++k) body_[l][k][i] = 0;
       for (int k = 0; k < kPointFreedoms; ++k) point_[l][k][i] = 0;
       q_[l][i] = r_[l][i] = 0;
@@ -232,19 +223,19 @@ class PadProblem {
   void weigh() {
     for (int i = 0; i < lanes(); i += 2) {
       DoublePair sum = {};
-      for (int l = 0; l < kRows; ++l)
+      for (int l = 0; l < kPadRows; ++l)
         times<kMoverFreedoms>([&](auto k) { sum += pairAt(body_[l][k] + i) * pairAt(body_[l][k] + i); });
-      for (int l = 0; l < kRows && i < first_[kMostPoints]; ++l)
+      for (int l = 0; l < kPadRows && i < first_[kMostPoints]; ++l)
         times<kPointFreedoms>([&](auto k) { sum += pairAt(point_[l][k] + i) * pairAt(point_[l][k] + i); });
-      pairAt(w_ + i) = sum / double{kRows};
+      pairAt(w_ + i) = sum / double{kPadRows};
     }
   }
 
-  void respond(const Lanes (&r)[kRows]) {
+  void respond(const Lanes (&r)[kPadRows]) {
     addProducts<kMoverFreedoms>(body_, r, 0, lanes(), y_body_);
     for (int p = 0; p < points_; ++p) addProducts<kPointFreedoms>(point_, r, first_[p], end_[p], y_point_[p]);
   }
-  void setVelocities(const Lanes (&q)[kRows], Lanes (&u)[kRows]) const {
+  void setVelocities(const Lanes (&q)[kPadRows], Lanes (&u)[kPadRows]) const {
     addImages<kMoverFreedoms>(body_, y_body_, 0, lanes(), q, u);
     for (int p = 0; p < points_; ++p) addImages<kPointFreedoms>(point_, y_point_[p], first_[p], end_[p], u, u);
   }
@@ -259,7 +250,7 @@ class PadProblem {
     std::copy(&body_[0][0][0], &body_[0][0][0] + sizeof(body_) / sizeof(double), &body[0][0][0]);
     std::copy(&point_[0][0][0], &point_[0][0][0] + sizeof(point_) / sizeof(double), &point[0][0][0]);
     forEachContact([&](int i) {
-      for (int l = 0; l < kRows && !holds_[i]; ++l) {
+      for (int l = 0; l < kPadRows && !holds_[i]; ++l) {
         for (int k = 0; k < kMoverFreedoms; ++k) body[l][k][i] = 0;
         for (int k = 0; k < kPointFreedoms; ++k) point[l][k][i] = 0;
       }
@@ -324,32 +315,15 @@ class PadProblem {
 
   int n_ = 0, points_ = 0;
   int group_[kMostContacts], lane_[kMostContacts], first_[kGroups], end_[kGroups];
-  bool holds_[kLanes];
+  bool holds_[kPadLanes];
   double speed_ = 0;
   alignas(16) Blocks<kMoverFreedoms> body_;
   alignas(16) Blocks<kPointFreedoms> point_;
-  alignas(16) Lanes q_[kRows], r_[kRows], u_[kRows], mu_, w_;
+  alignas(16) Lanes q_[kPadRows], r_[kPadRows], u_[kPadRows], mu_, w_;
   alignas(16) double y_body_[kMoverFreedoms], y_point_[kMostPoints][kPointFreedoms];
   alignas(16) double normal_[kMoverFreedoms * kMoverFreedoms], normal_p_[kMostPoints][kPointFreedoms * kPointFreedoms];
   alignas(16) double coupling_[kMostPoints][kPointFreedoms][kMoverFreedoms];
 };
-
-// stuck_contacts.cpp's steps from the warm start.
-bool holdNearest(const ContactProblem& problem, const SolverOptions& options, PadProblem& pads, SolverScratch& scratch,
-                 SolveResult& result) {
-  const double enough = (result.residual <= options.tolerance ? kStrictness : 0.5) * options.tolerance;
-  const std::int64_t cost = stuckOperations(problem);
-  pads.holdWhatPushes();
-  while (result.iterations < kMostStuckSteps && spend(cost, scratch) && pads.allStayAsTheyAre() && pads.step() &&
-         pads.holdsWith(kStuckFrictionUsed)) {
-    const ContactError error = pads.error();
-    ++result.iterations;
-    result.residual = error.residual;
-    result.error = error.speed;
-    if (error.residual <= enough) return !pads.maySqueeze();
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -357,16 +331,7 @@ bool solvePadProblem(const ContactProblem& problem, const SolverOptions& options
                      double* u, SolveResult& result) {
   PadProblem pads;
   if (!pads.read(problem, r)) return false;
-  const ContactError start = pads.error();
-  result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};
-  if (!isGoodStart(problem, options, start, pads.speed())) {
-    const std::int64_t operations_left = scratch.operations_left;
-    result.method = SolveMethod::kNewton;
-    if (!holdNearest(problem, options, pads, scratch, result)) {
-      scratch.operations_left = operations_left;
-      return false;
-    }
-  }
+  if (!holdNearest(problem, options, pads, scratch, result)) return false;
   pads.write(r, u);
   return true;
 }

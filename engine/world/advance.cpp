@@ -99,8 +99,9 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
   }
   for (Contact& c : scratch.contacts) {
     if (!c.active()) continue;
+    const int rows = rowsOf(c.material);
     Vec3 moment_W = Vec3::Zero();
-    for (int k = kTorsionRow; k < rowsOf(c.material); ++k) moment_W += (radiusOf(c, k) * c.r[k]) * axisOf(c, k);
+    for (int k = kTorsionRow; k < rows; ++k) moment_W += (radiusOf(c, k) * c.r[k]) * axisOf(c, k);
     applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c);
     applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c);
   }

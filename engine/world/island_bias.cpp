@@ -64,17 +64,6 @@ class BiasFit {
         gradient_(memory.gradient.data()),
         response_(memory.way.data()) {}
 
-  // True if contacts that push ask for next to nothing, whichever of their rows take part.
-  bool isNegligible() const {
-    double largest = 0;
-    for (int i = 0; i < problem_.contactCount(); ++i) {
-      const Contact& c = contact(i);
-      if (!(r_[problem_.firstRow(i) + kNormalRow] > 0)) continue;
-      for (int k = 0; k < problem_.rows(i); ++k) largest = std::max(largest, std::abs(unitOfRow(c, k) * c.bias_C[k]));
-    }
-    return kNormalRowWeight * largest <= kNegligible;
-  }
-
   // How much is asked for [m/s].
   double gather() {
     double largest = 0;
@@ -252,10 +241,23 @@ bool mayContradict(const ContactProblem& problem) {
   return problem.movers >= 2 && n >= problem.movers;
 }
 
+bool askForNothing(const ContactProblem& problem, const double* r, std::span<const int> order,
+                   const std::vector<Contact>& contacts) {
+  double largest = 0;
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const Contact& c = contacts[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
+    if (!(r[problem.firstRow(i) + kNormalRow] > 0)) continue;
+    withRows(problem.rows(i), [&](auto rows) {
+      for (int k = 0; k < rows; ++k) largest = std::max(largest, std::abs(unitOfRow(c, k) * c.bias_C[k]));
+    });
+  }
+  return kNormalRowWeight * largest <= kNegligible;
+}
+
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
                      double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
+  if (memory.operations_left < 0 || askForNothing(problem, r, order, contacts)) return;
   BiasFit fit(pushing, problem, r, nullptr, order, contacts, memory);
-  if (memory.operations_left < 0 || fit.isNegligible()) return;
   const double asked = fit.gather();
   if (asked <= kNegligible) return;
   fit.minimise();

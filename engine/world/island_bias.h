@@ -30,6 +30,11 @@ enum class PushingBy : std::uint8_t {
 // True if the problem's contacts may contradict each other around a loop of bodies.
 bool mayContradict(const ContactProblem& problem);
 
+// True if contacts that push ask for next to nothing, whichever of their rows take part: then a fit changes nothing.
+// The problem's sides aren't read.
+bool askForNothing(const ContactProblem& problem, const double* r, std::span<const int> order,
+                   const std::vector<Contact>& contacts);
+
 // Where mayContradict(problem): fits bias_C and the stick offsets of the island's contacts, and corrects problem.q
 // through `q`. `r`: impulses of the last tick, or the best that were found in this one; `order`: which of `contacts`
 // the problem's are; `memory` is working memory. Allocates nothing.

@@ -8,7 +8,8 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/few_contacts.h"
 #include "pincer/engine/world/contact_rows.h"
-#include "pincer/engine/world/contact_sides.h"
+#include "pincer/engine/world/grip.h"
+#include "pincer/engine/world/island_sides.h"
 #include "pincer/engine/world/island_threads.h"
 #include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/scratch.h"
@@ -40,12 +41,6 @@ int moverOf(const WorldModel& model, const WorldScratch& scratch, const Contact&
   return moves ? static_cast<int>(model.bodies.size()) + side.index : -1;
 }
 
-// f(mover) for it and, if it is a block, for those before it on the way to the base.
-template <class F>
-void forEachOf(const IslandScratch& s, int mover, F f) {
-  for (; mover >= 0; mover = parentOf(s, mover)) f(mover);
-}
-
 int rootOf(std::vector<int>& parent, int mover) {
   while (parent[mover] != mover) mover = parent[mover] = parent[parent[mover]];
   return mover;
@@ -55,12 +50,20 @@ void findEnds(const WorldModel& model, const WorldScratch& scratch, IslandScratc
   ContactEnds* ends = s.ends.data();
   int *const parent = s.parent.data(), *const number = s.number.data(), *const island_of = s.island_of.data();
   s.near.clear();
+  const Contact* before = nullptr;
   for (const Contact& c : scratch.contacts) {
     if (c.far) {
       ++ends;
       continue;
     }
     s.near.push_back(static_cast<int>(&c - scratch.contacts.data()));
+    if (before && before + 1 == &c && isOfSameTwo(*before, c) && c.a.kind != SideKind::kJoint) {
+      *ends = ends[-1];  // as a face's contacts all have
+      before = &c;
+      ++ends;
+      continue;
+    }
+    before = &c;
     *ends = {moverOf(model, scratch, c, true), moverOf(model, scratch, c, false)};
     for (const int end : {ends->a, ends->b}) {
       forEachOf(s, end, [&](int mover) {
@@ -129,102 +132,6 @@ void sortContacts(IslandScratch& s) {
   PINCER_ASSERT(place == static_cast<int>(s.near.size()));
 }
 
-int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& side, int mover, Island& island,
-             IslandScratch& s) {
-  if (mover < 0) return -1;
-  PINCER_ASSERT(isIndex(mover, s.number.size()));
-  if (s.number[mover] < 0) {
-    s.number[mover] = island.movers++;
-    if (side.kind == SideKind::kBody && model.bodies[side.index].tree < 0)
-      s.root_inertia[mover] = rootOfInertia(model.bodies[side.index].rotation, scratch.bodies[side.index].X_WI_mid.q);
-  }
-  return s.number[mover];
-}
-
-// True if neither side moves faster than what counts as rest of many contacts.
-bool isCalm(const WorldModel& model, const Contact& c) {
-  const double limit = 2 * restErrorOf(model.options.solver), limit2 = limit * limit;
-  const auto is_slow = [&](const Motion& m, const Vec3& arm_W) {
-    return m.v_W.squaredNorm() <= limit2 && m.w_W.squaredNorm() * arm_W.squaredNorm() <= limit2;
-  };
-  return is_slow(c.mover_a->start, c.arm_a_W) && is_slow(c.mover_b->start, c.arm_b_W);
-}
-
-// Of an island in which a contact may have more than two movers.
-void fillManySides(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s) {
-  const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
-  ContactSide* const all = s.many_sides.data() + s.sides_per_contact * island.work;
-  int* const first_side = s.first_side.data() + 2 * island.work;
-  int sides = 0;
-  for (int n = 0; n < island.contacts; ++n) {
-    const int i = order[n], rows = from_row[i + 1] - from_row[i];
-    const Contact& c = scratch.contacts[i];
-    first_side[n] = sides;
-    for (const bool is_a : {true, false}) {
-      const Side& side = is_a ? c.a : c.b;
-      forEachOf(s, is_a ? s.ends[i].a : s.ends[i].b, [&](int mover) {
-        ContactSide& out = all[sides];
-        fillSide(model, scratch, c, rows, is_a, mover, numberOf(model, scratch, side, mover, island, s), s.root_inertia,
-                 out);
-        for (int other = first_side[n]; other < sides; ++other) {
-          if (all[other].mover == out.mover) return addSide(rows, out, all[other]);
-        }
-        ++sides;
-      });
-    }
-    island.settling = std::max(island.settling, c.settling);
-    island.calm = island.calm && island.contacts > kFewContacts && isCalm(model, c);
-  }
-  first_side[island.contacts] = sides;
-}
-
-bool hasManySides(const IslandScratch& s, const Island& island) {
-  if (s.sides_per_contact == 2) return false;
-  const int* const order = s.order.data() + island.place;
-  return std::any_of(order, order + island.contacts, [&](int i) {
-    int count = 0;
-    for (const int end : {s.ends[i].a, s.ends[i].b}) forEachOf(s, end, [&](int) { ++count; });
-    return count > 2;
-  });
-}
-
-// Of a link that two blocks move, against what doesn't move: the inboard one takes the place of that.
-void fillInboardSide(const WorldModel& model, WorldScratch& scratch, int i, Island& island, IslandScratch& s,
-                     ContactSides& sides) {
-  const Contact& c = scratch.contacts[i];
-  const int rows = scratch.first_row[i + 1] - scratch.first_row[i];
-  const ContactEnds ends = s.ends[i];
-  for (const bool is_a : {true, false}) {
-    const int mover = parentOf(s, is_a ? ends.a : ends.b);
-    if (mover < 0) continue;
-    PINCER_ASSERT((is_a ? ends.b : ends.a) < 0);
-    const int number = numberOf(model, scratch, is_a ? c.a : c.b, mover, island, s);
-    fillSide(model, scratch, c, rows, is_a, mover, number, s.root_inertia, sides[is_a ? 1 : 0]);
-  }
-}
-
-// The island's contacts as the movers see them.
-void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s) {
-  const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
-  const Contact* const contacts = scratch.contacts.data();
-  const ContactEnds* const all_ends = s.ends.data();
-  ContactSides* const all_sides = s.sides.data() + island.work;
-  for (int n = 0; n < island.contacts; ++n) {
-    const int i = order[n], rows = from_row[i + 1] - from_row[i];
-    const Contact& c = contacts[i];
-    const ContactEnds ends = all_ends[i];
-    ContactSides& sides = all_sides[n];
-    fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s.root_inertia,
-             sides[0]);
-    fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s.root_inertia,
-             sides[1]);
-    if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
-    if (s.sides_per_contact > 2) fillInboardSide(model, scratch, i, island, s, sides);
-    island.settling = std::max(island.settling, c.settling);
-    island.calm = island.calm && island.contacts > kFewContacts && isCalm(model, c);
-  }
-}
-
 // Of the only island: as it lies.
 void takeRows(WorldScratch& scratch, Island& island) {
   island.first_row = scratch.first_row.data();
@@ -272,14 +179,18 @@ void gather(const WorldModel& model, Island& island, WorldScratch& scratch) {
   }
   island.holds_trees = holdsTrees(s, island);
   island.has_many_sides = hasManySides(s, island);
+  island.has_sides = island.has_many_sides || !mayBeGrip(s, island, scratch.contacts);
   if (island.has_many_sides) {
     fillManySides(model, scratch, island, s);
-  } else {
+  } else if (island.has_sides) {
     fillSides(model, scratch, island, s);
+  } else {
+    numberMovers(model, scratch, island, s);
   }
 }
 
 int countRows(const WorldScratch& scratch) {
+  if (scratch.far_contacts == 0) return scratch.first_row[static_cast<int>(scratch.contacts.size())];
   int rows = 0;
   for (const int i : scratch.islands.near) rows += scratch.first_row[i + 1] - scratch.first_row[i];
   return rows;

@@ -11,7 +11,9 @@
 #include "pincer/engine/solve/sweeps.h"
 #include "pincer/engine/world/budget.h"
 #include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/grip.h"
 #include "pincer/engine/world/island_bias.h"
+#include "pincer/engine/world/island_sides.h"
 #include "pincer/engine/world/push_out.h"
 #include "pincer/engine/world/rest.h"
 #include "pincer/engine/world/scratch.h"
@@ -52,6 +54,7 @@ class IslandSolve {
     memory_.haste = hasteAfter(scratch_.solves);
     memory_.hit_operations = kHitOperations * island_.contacts;
     island_.hit_operations = 0;
+    if (!island_.has_sides && !(is_grip_ = readGrip(model_, scratch_, order_, grip_))) fillSides();
     if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
     if (restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result)) {
       island_.operations = 0;
@@ -227,6 +230,8 @@ class IslandSolve {
   }
 
   void fit(PushingBy pushing) {
+    if (!island_.has_sides && askForNothing(problem_, island_.r, order_, scratch_.contacts)) return;
+    fillSides();
     fitIslandBiases(pushing, scratch_.h, offsetRate(), problem_, island_.r, island_.q, order_, scratch_.contacts,
                     memory_);
   }
@@ -240,8 +245,22 @@ class IslandSolve {
                      memory_);
   }
 
+  void fillSides() {
+    if (!island_.has_sides) engine::fillSides(model_, scratch_, island_, scratch_.islands);
+    island_.has_sides = true;
+  }
+
   void solve(const SolverOptions& options) {
+    if (is_grip_ && solveAsGrip(options)) return;
+    fillSides();
     solveContacts(problem_, options, memory_, island_.r, island_.u, island_.result);
+  }
+
+  bool solveAsGrip(const SolverOptions& options) {
+    projectOntoCones(problem_, island_.r);
+    const bool is_solved = solveGripProblem(grip_, problem_, options, memory_, island_.r, island_.u, island_.result);
+    problem_.declined_grip = !is_solved;
+    return is_solved;
   }
 
   void solveAgain(const SolverOptions& options) {
@@ -306,6 +325,8 @@ class IslandSolve {
   Island& island_;
   SolverScratch& memory_;
   ContactProblem problem_;
+  GripProblem grip_;
+  bool is_grip_ = false;
   const std::span<const int> order_;
   const bool is_loop_;
   const double tick_;  // [s]

@@ -1,5 +1,6 @@
 #include "pincer/grasp/tick/finger_contacts.h"
 
+#include <cstdint>
 #include <limits>
 #include <type_traits>
 
@@ -57,6 +58,11 @@ class FingerLook {
     const engine::BodyScratch& mid;  // of its body
     const Vec3& p_WS;
     const Mat3& R_WS;
+  };
+
+  struct Touching {
+    engine::Side a, b;       // the finger and a body's shape
+    std::uint64_t first_id;  // of their contacts
   };
 
   // Its bounds are a sphere about `centre_W`.
@@ -125,21 +131,23 @@ class FingerLook {
       }
     }
     if (!b.dynamic && !moves_) return;
+    Touching two{{SideKind::kPoint, 0, finger_}, engine::sideOf(model_.world, place.collider), 0};
+    two.first_id = engine::contactId(model_.world.shape_bits, two.a, two.b, 0);
     for (int i = 0; i < found.count; ++i) {
-      if (found.points[i].phi < margin) add(found.points[i], place);
+      if (found.points[i].phi < margin) add(found.points[i], place, two);
     }
   }
 
   // The two touch midway between the body's surface and the fingertip's, on the
   // normal n_W but for meshes with force shading.
-  void add(const contact::SurfaceContact& found, const Place& place) {
+  void add(const contact::SurfaceContact& found, const Place& place, const Touching& two) {
     engine::Contact* const c = engine::addContact(scratch_.world, found.phi);
     if (!c) return;
     const Vec3 n_W = place.R_WS * found.n_B;
     PINCER_ASSERT(isUnitIfFinite(n_W));
-    c->a = {SideKind::kPoint, 0, finger_};
-    c->b = engine::sideOf(model_.world, place.collider);
-    c->id = engine::contactId(model_.world.shape_bits, c->a, c->b, found.feature);
+    c->a = two.a;
+    c->b = two.b;
+    c->id = two.first_id | found.feature;
     c->R_WC.col(2) = n_W;
     c->p_W = place.p_WS + place.R_WS * found.p_BS + 0.5 * found.phi * n_W;
     c->material = place.collider.material;

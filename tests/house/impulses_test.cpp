@@ -21,6 +21,7 @@ const std::map<std::string, std::string> kWritesImpulses = {
     {"solveSmallProblem", "way 1: the small form, up to three contacts"},
     {"solveStuckContacts", "way 2, where all stick: one step"},
     {"solvePadProblem", "the same step, of one body between flat pads"},
+    {"solveGripProblem", "the same, of a free body"},
     {"solveFewContacts", "way 2: up to sixty"},
     {"solvePointProblem", "way 2, last resort of a point between walls"},
     {"searchImpulses", "way 3: many; descents, rounds and sweeps"},
