@@ -86,14 +86,16 @@ void facet(const Box& b, const Vec3& d, Facet& f) {
   f.n = sign * Vec3::Unit(i);
   constexpr std::array<std::array<int, 2>, 4> loop = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
   for (const auto& [sj, sk] : loop) {
-    Vec3 p;
-    p[i] = sign * b.half[i];
-    p[j] = sj * b.half[j];
-    p[k] = sk * b.half[k];
+    // Where it belongs at once: a vector that is copied right after its numbers were written is waited for.
+    FacetCorner& corner = f.corners[static_cast<std::size_t>(f.count++)];
+    corner.p[i] = sign * b.half[i];
+    corner.p[j] = sj * b.half[j];
+    corner.p[k] = sk * b.half[k];
     const int vertex = (sign > 0) << i | (sj > 0) << j | (sk > 0) << k;
     const int along = sj == sk ? j : k;        // the edge to the next corner
     const int fixed = vertex & ~(1 << along);  // and the two signs that it keeps
-    f.add(p, vertex, 8 * along + fixed);
+    corner.vertex = static_cast<std::uint16_t>(vertex);
+    corner.edge = static_cast<std::uint16_t>(8 * along + fixed);
   }
 }
 void strata(const Box&, const Vec3& d, Strata& s) {

@@ -153,8 +153,8 @@ class Grip {
   static bool isSameFace(const GripContact& x, const GripContact& y) {
     const double *const R = x.R_WC->data(), *const S = y.R_WC->data();
     bool is_same = x.point == y.point && x.sign == y.sign;
-    for (int k = 0; k < 9 && is_same; ++k) is_same = R[k] == S[k];
-    return is_same;
+    for (int k = 0; k < 3 && is_same; ++k) is_same = R[k] == S[k] && R[6 + k] == S[6 + k];
+    return is_same;  // the axis between follows from the two
   }
   // Largest natural maps and responses, and the sum of all that must be finite, of two columns of lanes.
   struct PairResidual {
@@ -188,7 +188,7 @@ class Grip {
 
   // The mean of W_ii's diagonal: of its three rows the trace, whatever their axes.
   void weigh() {
-    Symmetric3 inverse_inertia;
+    Symmetric3 inverse_inertia{};
     times<3>([&](auto k) { inverse_inertia.add(squareOf({{F_.column[k][0], F_.column[k][1], F_.column[k][2]}}), 1); });
     const Symmetric3 J = inverse_inertia.turning();
     double of_point[kMostGripPoints];
@@ -207,7 +207,7 @@ class Grip {
 
   // y = A^T r
   void respond(const GripLanes (&r)[kGripRows]) {
-    Triple force, moment;
+    Triple force{}, moment{};
     for (int p = 0; p < grip_.points; ++p) y_point_[p] = {};
     for (int f = 0; f < face_count_; ++f) {
       const Face& face = faces_[f];
@@ -275,7 +275,7 @@ class Grip {
 
   double largestDiagonal() const {
     double n = 0, largest = 0;
-    Symmetric3 squares;
+    Symmetric3 squares{};
     for (int p = 0; p <= grip_.points; ++p) {
       n += arms_[p].n;
       squares.add(arms_[p].squares, 1);
@@ -291,7 +291,7 @@ class Grip {
     for (int f = 0; f < face_count_; ++f)
       addArms(faces_[f], arms_[faces_[f].point >= 0 ? faces_[f].point : grip_.points]);
     const double ridge = kStuckRidge * largestDiagonal();
-    GripSums sums;
+    GripSums sums{};
     for (int p = 0; p < grip_.points; ++p) sums.addPoint(arms_[p], E_[p], ridge, inverse_P_[p]);
     sums.addStanding(arms_[grip_.points]);
     Triple N_ll, N_la[3];
@@ -307,7 +307,7 @@ class Grip {
 
   // y becomes N^-1 y.
   void solve() {
-    Triple moment;
+    Triple moment{};
     for (int p = 0; p < grip_.points; ++p) {
       const Triple& a = arms_[p].sum;
       Triple z;
@@ -322,7 +322,7 @@ class Grip {
     factor_.solve(y_linear_, y_angular_);
     const Triple turn_W = F_ * y_angular_;
     for (int p = 0; p < grip_.points; ++p) {
-      Triple way;
+      Triple way{};
       addCross(turn_W, arms_[p].sum, way);
       times<3>([&](auto k) {
         const double moved = arms_[p].n * root_mass_ * y_linear_[k] + way[k];

@@ -6,7 +6,7 @@ namespace pincer::engine {
 
 // Contacts' arms: their number, sum, and sum of squares.
 struct GripArms {
-  double n = 0;
+  double n;
   Triple sum;
   Symmetric3 squares;
 };

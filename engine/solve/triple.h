@@ -9,7 +9,7 @@
 namespace pincer::engine {
 
 struct Triple {
-  double x[3] = {};
+  double x[3];
   double& operator[](int k) { return x[k]; }
   double operator[](int k) const { return x[k]; }
 };
@@ -32,7 +32,7 @@ struct Matrix3 {
 
 // Symmetric: xx, yy, zz, xy, xz, yz.
 struct Symmetric3 {
-  double s[6] = {};
+  double s[6];
   Triple operator*(const Triple& v) const {
     return {{(s[0] * v[0] + s[3] * v[1]) + s[4] * v[2], (s[3] * v[0] + s[1] * v[1]) + s[5] * v[2],
              (s[4] * v[0] + s[5] * v[1]) + s[2] * v[2]}};

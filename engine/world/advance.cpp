@@ -16,24 +16,31 @@
 namespace pincer::engine {
 namespace {
 
+void push(const Vec3& impulse_W, const Contact& c, MoverScratch& mover) {
+  mover.impulse_W += impulse_W;
+  mover.rest_speed = mover.touched ? std::min(mover.rest_speed, c.rest_speed) : c.rest_speed;
+  mover.touched = true;
+  mover.closing = mover.closing || c.closing;
+}
+
+Vec3 turnBy(const Vec3& arm_W, const Vec3& impulse_W, const Vec3* moment_W) {
+  const Vec3 moment = arm_W.cross(impulse_W);
+  return moment_W ? Vec3(moment + *moment_W) : moment;
+}
+
+// moment_W  besides that of the impulse; null for none
 void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& impulse_W,
-                  const Vec3& moment_W, const Contact& c) {
-  const auto push = [&](MoverScratch& mover) {
-    mover.impulse_W += impulse_W;
-    mover.rest_speed = mover.touched ? std::min(mover.rest_speed, c.rest_speed) : c.rest_speed;
-    mover.touched = true;
-    mover.closing = mover.closing || c.closing;
-  };
+                  const Vec3* moment_W, const Contact& c) {
   if (side.kind == SideKind::kPoint) {
     PointScratch& point = scratch.points[side.index];
-    point.twist_impulse += moment_W.dot(c.n_W());
-    if (point.inverse_turn > 0) point.turn_impulse_W += arm_W.cross(impulse_W) + moment_W;
-    return push(point);
+    if (moment_W) point.twist_impulse += moment_W->dot(c.n_W());
+    if (point.inverse_turn > 0) point.turn_impulse_W += turnBy(arm_W, impulse_W, moment_W);
+    return push(impulse_W, c, point);
   }
-  if (side.kind == SideKind::kJoint) return push(scratch.joint_rows[side.index]);
+  if (side.kind == SideKind::kJoint) return push(impulse_W, c, scratch.joint_rows[side.index]);
   BodyScratch& body = scratch.bodies[side.index];
-  push(body);
-  body.angular_impulse_W += arm_W.cross(impulse_W) + moment_W;
+  push(impulse_W, c, body);
+  body.angular_impulse_W += turnBy(arm_W, impulse_W, moment_W);
 }
 
 void rest(MoverScratch& mover) {
@@ -100,10 +107,16 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
   for (Contact& c : scratch.contacts) {
     if (!c.active()) continue;
     const int rows = rowsOf(c.material);
+    if (rows == kTorsionRow) {
+      applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, nullptr, c);
+      applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, nullptr, c);
+      continue;
+    }
     Vec3 moment_W = Vec3::Zero();
     for (int k = kTorsionRow; k < rows; ++k) moment_W += (radiusOf(c, k) * c.r[k]) * axisOf(c, k);
-    applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, moment_W, c);
-    applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, -moment_W, c);
+    applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, &moment_W, c);
+    moment_W = -moment_W;
+    applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, &moment_W, c);
   }
   if (scratch.h > 0) spreadClosing(model, scratch);
   if (!model.joint_groups.empty()) gatherJointImpulses(model, scratch);

@@ -43,25 +43,24 @@ class GripReader {
 
  private:
   bool add(const Contact& c) {
-    const bool is_a = isFreeBody(model_, c.a);
-    const Side &own = is_a ? c.a : c.b, &other = is_a ? c.b : c.a;
-    if (!is_a && !isFreeBody(model_, own)) return false;
+    is_a_ = isFreeBody(model_, c.a);
+    const Side &own = is_a_ ? c.a : c.b, &other = is_a_ ? c.b : c.a;
+    if (!is_a_ && !isFreeBody(model_, own)) return false;
     if (body_ >= 0 && own.index != body_) return false;
     body_ = own.index;
-    int point = -1;
-    if (other.kind == SideKind::kPoint ? !findPoint(other.index, point) : !stands(model_, other)) return false;
-    grip_.contact[static_cast<std::size_t>(grip_.contacts++)] = {&c.R_WC, is_a ? &c.arm_a_W : &c.arm_b_W,
-                                                                 is_a ? 1.0 : -1.0, point};
+    point_ = -1;
+    if (other.kind == SideKind::kPoint ? !findPoint(other.index, point_) : !stands(model_, other)) return false;
+    put(c);
     return true;
   }
 
+  void put(const Contact& c) {
+    grip_.contact[static_cast<std::size_t>(grip_.contacts++)] = {&c.R_WC, is_a_ ? &c.arm_a_W : &c.arm_b_W,
+                                                                 is_a_ ? 1.0 : -1.0, point_};
+  }
   void addAsBefore(const Contact& c) {
-    GripContact& next = grip_.contact[static_cast<std::size_t>(grip_.contacts)];
-    next = grip_.contact[static_cast<std::size_t>(grip_.contacts - 1)];
-    next.R_WC = &c.R_WC;
-    next.arm_W = next.sign > 0 ? &c.arm_a_W : &c.arm_b_W;
-    if (next.point >= 0) ++count_[static_cast<std::size_t>(next.point)];
-    ++grip_.contacts;
+    put(c);
+    if (point_ >= 0) ++count_[static_cast<std::size_t>(point_)];
   }
 
   // Its place among the grip's points.
@@ -84,7 +83,8 @@ class GripReader {
   const WorldModel& model_;
   const WorldScratch& scratch_;
   GripProblem& grip_;
-  int body_ = -1;
+  int body_ = -1, point_ = -1;                      // of the contact before; point_ as GripContact's
+  bool is_a_ = false;                               // the body is its a
   std::array<int, kMostGripPoints> index_, count_;  // of each point: which it is; its contacts
 };
 

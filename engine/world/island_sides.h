@@ -15,8 +15,8 @@ void forEachOf(const IslandScratch& s, int mover, F f) {
 bool hasManySides(const IslandScratch& s, const Island& island);
 void fillManySides(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s);
 
-// Of other islands: their movers' numbers and, from that on, blocks. Where the numbers alone are needed, they
-// are had apart, and the blocks later, of several islands at once.
+// Fills other islands' blocks and their movers' numbers. Grips, which need the numbers alone as a rule, have them from
+// numberMovers, and their blocks later, several islands at once.
 void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s);
 void numberMovers(const WorldModel& model, WorldScratch& scratch, Island& island, IslandScratch& s);
 

@@ -1,5 +1,6 @@
 // Each contact's memory of a tick.
 #include <algorithm>
+#include <array>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/contact_rows.h"
@@ -74,17 +75,22 @@ bool haveMovedRigidly(std::span<const ContactMemory> face) {
     const Vec3 way_W = m.arm_a_W - first.arm_a_W;
     return Vec2(first.t1_W.dot(way_W), t2_W.dot(way_W));
   };
+  constexpr std::size_t kMost = 8;  // corners of a face, as a rule fewer; beyond, places are found again
+  std::array<Vec2, kMost> places;
   double turn = 0, spread = 0;
-  for (const ContactMemory& m : face) {
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    const ContactMemory& m = face[k];
     if (!sticks(m) || m.t1_W != first.t1_W || m.n_W != first.n_W) return false;
     const Vec2 at = rho(m);
+    if (k < kMost) places[k] = at;
     turn += at.x() * (m.offset_C[1] - first.offset_C[1]) - at.y() * (m.offset_C[0] - first.offset_C[0]);
     spread += at.squaredNorm();
   }
   const double theta = spread > 0 ? turn / spread : 0;
   double left = 0, largest = 0;
-  for (const ContactMemory& m : face) {
-    const Vec2 at = rho(m), offset = m.offset_C.head<2>();
+  for (std::size_t k = 0; k < face.size(); ++k) {
+    const ContactMemory& m = face[k];
+    const Vec2 at = k < kMost ? places[k] : rho(m), offset = m.offset_C.head<2>();
     left = std::max(left, (offset - first.offset_C.head<2>() - theta * Vec2(-at.y(), at.x())).squaredNorm());
     largest = std::max(largest, offset.squaredNorm());
   }

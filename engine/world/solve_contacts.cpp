@@ -22,6 +22,7 @@ double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const
 // True if a contact that opens still has an impulse, below the solver's tolerance: what is in the air would stick with
 // it, and remember how far it flies as slip that is to be undone.
 bool isResidue(const WorldModel& model, const WorldScratch& scratch, const Contact& c) {
+  if (c.r[kNormalRow] >= 0 && !(c.u_C[kNormalRow] > 0)) return false;  // it doesn't open
   const double w = inverseMassOf(model, scratch, c.a) + inverseMassOf(model, scratch, c.b);
   return w * c.r[kNormalRow] < kResidue * c.u_C[kNormalRow];
 }

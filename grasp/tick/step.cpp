@@ -65,11 +65,16 @@ FingersContacts firstOf(FingersContacts sorted, int finger) {
 namespace {
 
 // Angular impulse about the normal at the mean place that the contacts' forces make by being apart.
+// Number by number: the place and the normal were written just before, and as vectors they would be waited for.
 double momentOfPoints(FingersContacts contacts, const FingerReport& report) {
+  const double px = report.p_WC.x(), py = report.p_WC.y(), pz = report.p_WC.z();
+  const double nx = report.n_W.x(), ny = report.n_W.y(), nz = report.n_W.z();
   double moment = 0;
   for (const engine::Contact& c : contacts) {
     if (!c.active()) continue;
-    moment += report.n_W.dot((c.p_W - report.p_WC).cross(c.impulse_W));
+    const double x = c.p_W.x() - px, y = c.p_W.y() - py, z = c.p_W.z() - pz;
+    const Vec3& f = c.impulse_W;
+    moment += (nx * (y * f.z() - z * f.y()) + ny * (z * f.x() - x * f.z())) + nz * (x * f.y() - y * f.x());
   }
   return moment;
 }
