@@ -16,6 +16,13 @@ constexpr int kTorsionRow = 3, kRollingRow = 4;  // about n; the first of two, a
 // of one contact; rows that it doesn't have are 0
 using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign>;
 
+// What is tried for up to sixty contacts where Newton's method fails.
+enum class SolverEffort : std::uint8_t {
+  kRounds,  // Newton's method with a proximal term
+  kInside,  // of less than a dozen: from the interior, then by rounds
+  kAll,     // and what takes a millisecond
+};
+
 struct SolverOptions {
   double tolerance = 1e-10;  // on the residual, see solve/residual.h [-]; range [1e-14, 1e-2]
   // The dial between time and error: by how much the contact velocities of more than sixty contacts may
@@ -24,7 +31,7 @@ struct SolverOptions {
   double accuracy = 1e-6;
   // By how much contacts that contradict each other may give way, see SolveResult [m/s].
   double largest_give = 0;
-  bool thorough = true;  // of up to sixty contacts: whether the costlier methods are tried after Newton's
+  SolverEffort effort = SolverEffort::kAll;
   // Most that the iterations of all solves of a tick may cost [s], 0 or 1e-6 .. 10; 0: no limit. Counted in
   // multiplications, not measured, so that results don't depend on what else the machine does. Where it runs out the
   // best iterate counts, flagged and energy-safe.

@@ -71,7 +71,7 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   const bool is_few = problem.contactCount() <= kFewContacts;
   if (is_few) solveFew(problem, options, scratch, r, u, result);
   const bool may_search = problem.contactCount() >= kManyContacts || !problem.first_side.empty();
-  const bool is_short = is_few && !result.converged && !result.yields && options.thorough;
+  const bool is_short = is_few && !result.converged && !result.yields && options.effort == SolverEffort::kAll;
   if (!is_few || (is_short && may_search && scratch.operations_left >= 0))
     result = searchImpulses(problem, options, scratch, r, u);
   settleEnergy(problem, scratch, r, u, result);

@@ -25,7 +25,7 @@ struct Patience {
 constexpr Patience patienceOf(const SolverOptions& options) {
   return options.accuracy > 0 ? Patience{12, 3, 60} : Patience{20, 20, 300};
 }
-constexpr double kNearSolution = 1e-8;   // residual from which Newton's method needs a step or two
+constexpr double kNearSolution = 1e-12;  // of the problem's speeds: slip that friction follows may be 1e-5 of them
 constexpr double kShiftedGap = 1e-6;     // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;      // enough to leave the basin in which Newton's method failed
 constexpr int kGivingRounds = 12;        // of Newton's method on contacts that give way
@@ -65,24 +65,22 @@ class FewSearch {
 
   bool tryNewton(const SolverOptions& options) { return finish(options); }
 
-  // Where Newton's method failed. Few contacts give way by more than the accuracy only where nothing else is left: what
-  // is pinched would creep. That they may give way means that they were tried without it, and the rounds with them.
+  // Where Newton's method failed. That contacts may give way means that they were tried without it.
   SolveMethod goOn(const SolverOptions& options) {
     const double most = options.largest_give;
     if (isSpent() || (!(most > 0) && isSqueezedNow())) return SolveMethod::kNotConverged;
     const bool is_small = problem_.contactCount() < kManyContacts;
-    if (!is_small || !(most > 0)) goOnProximally(options);
-    const bool is_squeezed = isSqueezedNow();
-    if (isEnough(options) && !is_squeezed) return SolveMethod::kNewton;
-    if ((is_squeezed || !is_small) && giveWay(options, most)) return SolveMethod::kNewton;
-    if (!options.thorough || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
-    iterations_ +=
-        followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations_, scratch_, current_);
-    if (finish(options) || giveWay(options, is_small ? std::min(options.accuracy, most) : most))
+    if (!is_small || options.effort == SolverEffort::kRounds) {
+      goOnProximally(options, equations_);
+    } else if (!(most > 0) && goOnFromInside(options)) {
       return SolveMethod::kInteriorPoint;
+    }
+    if ((isEnough(options) && !isSqueezedNow()) || giveWay(options, most)) return SolveMethod::kNewton;
+    if (options.effort != SolverEffort::kAll || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
+    if (!is_small && (goOnFromInside(options) || giveWay(options, most))) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
     if (!(most > 0) && iterateOnShift(options)) return SolveMethod::kInteriorPoint;
-    return sweepOn(options) || (is_small && giveWay(options, most)) ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
+    return sweepOn(options) ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
   }
 
   // An answer within the tolerance already, brought to round-off.
@@ -146,12 +144,27 @@ class FewSearch {
     return false;
   }
 
-  void goOnProximally(const SolverOptions& options) {
+  void goOnProximally(const SolverOptions& options, ContactEquations& equations) {
     restartFromBest();
     evaluate(problem_, current_);
     iterations_ +=
-        iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations_, scratch_, current_, trial_);
+        iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations, scratch_, current_, trial_);
     keepBest();
+  }
+
+  // Few contacts by contact: what movers' equations lose to round-off is as much as slow slip.
+  bool goOnFromInside(const SolverOptions& options) {
+    if (problem_.contactCount() >= kManyContacts) return goOnFromInside(options, equations_);
+    problem_ = scaleProblem(unscaled_, true, scratch_);
+    ContactEquations equations(problem_, EquationForm::kContacts, scratch_);
+    return goOnFromInside(options, equations);
+  }
+  bool goOnFromInside(const SolverOptions& options, ContactEquations& equations) {
+    iterations_ +=
+        followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations, scratch_, current_);
+    keepBest();
+    goOnProximally(options, equations);
+    return isEnough(options) && !(options.largest_give > 0 && isSqueezedNow());
   }
 
   // Newton's method from `current`; true if what it finds will do.

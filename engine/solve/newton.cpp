@@ -13,9 +13,11 @@ constexpr double kContactsEpsilon = 1e-11;  // far above round-off, far below th
 constexpr double kMoversEpsilon = 1e-6;  // redundant contacts share their load by the round-off of their gaps over this
 constexpr double kCorrected = 1e-8;      // of Newton's equations: what epsilon may leave of them
 constexpr int kMostCorrections = 3;      // by the same factors
-// small enough that a few rounds do, large enough for the equations to be tame
-constexpr double kProximalEpsilon = 1e-3;
-constexpr double kRoundDecrease = 1e-8;  // of |Phi|^2 in a round
+// of a first round: small enough that a few rounds do, large enough for the equations to be tame. Less after a round
+// that went easily, for slow slip asks for as little; more after one that failed
+constexpr double kProximalEpsilon = 1e-4, kLessEpsilon = 0.2, kLeastEpsilon = 1e-6;
+constexpr int kEasySteps = 4;
+constexpr double kRoundDecrease = 1e-6;  // of |Phi|^2 in a round
 constexpr int kStepsPerRound = 8;
 // of contacts that give way: as long as a round isn't solved, more
 constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;
@@ -23,8 +25,9 @@ constexpr int kStepsPerGivingRound = 12;
 // of contacts that are soft: the first with which Newton's method gets there
 constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
 constexpr double kFadesStill = 0.5;  // of the give of the round before
-constexpr int kPatience = 5;  // steps without a residual half as large as the best before, after which it won't come
-constexpr int kTrials = 6;    // step lengths 1, 1/2, .. 1/32
+// steps, or rounds, without a residual half as large as the best before, after which it won't come
+constexpr int kPatience = 5;
+constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
 constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2
 
 // Phi of one contact, y, and how the contact acts.
@@ -224,21 +227,27 @@ int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations
 int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
                       SolverScratch& scratch, Iterate& current, Iterate& trial) {
   double* const r_c = scratch.shift_centre.data();
-  double best = current.residual;
+  double best = current.residual, epsilon = kProximalEpsilon;
   int steps = 0, patience = kPatience;
   for (int round = 0; round < rounds; ++round) {
     if (current.residual <= tolerance || !std::isfinite(current.residual)) return steps;
     std::copy(current.r, current.r + problem.rowCount(), r_c);
-    const Centre centre{r_c, kProximalEpsilon};
-    const double start = merit(problem, centre, current);
-    for (int n = 0; n < kStepsPerRound; ++n) {
+    const Centre centre{r_c, epsilon};
+    const double enough = kRoundDecrease * merit(problem, centre, current);
+    bool is_solved = false;
+    int n = 0;
+    for (; n < kStepsPerRound && !is_solved; ++n) {
       NewtonStep newton(problem, current, centre, equations, scratch);
       if (!newton.solve()) return steps;
       searchLine(problem, centre, newton, tolerance, scratch, current, trial);
       std::swap(current, trial);
       ++steps;
-      if (current.residual <= tolerance || merit(problem, centre, current) <= kRoundDecrease * start) break;
+      is_solved = current.residual <= tolerance || merit(problem, centre, current) <= enough;
     }
+    if (!is_solved)
+      epsilon /= kLessEpsilon;
+    else if (n <= kEasySteps)
+      epsilon = std::max(kLessEpsilon * epsilon, kLeastEpsilon);
     if (current.residual < 0.5 * best) {
       best = current.residual;
       patience = kPatience;

@@ -24,8 +24,9 @@ int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations
 
 // The same for problems on which Newton's method alone cycles: up to `rounds` problems with the velocities u + epsilon
 // (r - r_c), r_c the answer of the round before. Each is tame (contacts that contradict each other give way by
-// epsilon), and their answers tend to the true one, at once in directions that redundant contacts leave open. Source:
-// R. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898 (proximal point).
+// epsilon), and their answers tend to the true one, at once in directions that redundant contacts leave open: the
+// sooner the smaller epsilon is, which follows how easily the last round went. Source: R. Rockafellar, SIAM J. Control
+// Optim. 14 (1976) 877-898 (proximal point).
 int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
                       SolverScratch& scratch, Iterate& current, Iterate& trial);
 

@@ -97,7 +97,7 @@ class IslandSolve {
   void solveLoop() {
     if (!fitToTurnOfTrees()) fit(PushingBy::kLastTick);
     if (island_.contacts > kFewContacts) return solve(giving(kLargestGive));
-    solve(quick());
+    solve(trying(SolverEffort::kInside));
     if (island_.result.converged) return;
     fit(PushingBy::kImpulses);
     solveAgain(giving(kLargestGive));
@@ -108,7 +108,7 @@ class IslandSolve {
   // out. If that fails, what contacts ask for is fitted to the impulses found, and they give way.
   void solveOne() {
     const bool may_jam = island_.contacts <= kFewContacts && scratch_.h > 0;
-    solve(may_jam ? quick() : options_);
+    solve(may_jam ? trying(SolverEffort::kRounds) : options_);
     if (pushesInVain()) solveWithoutPushes();
     if (may_jam && !isAnswered()) solveAgain(options_);
     if (isAnswered() || !(scratch_.h > 0) || memory_.operations_left < 0) return;
@@ -116,9 +116,9 @@ class IslandSolve {
     solveAgain(giving(kLargestGive));
   }
 
-  SolverOptions quick() const {
+  SolverOptions trying(SolverEffort effort) const {
     SolverOptions options = options_;
-    options.thorough = false;
+    options.effort = effort;
     return options;
   }
   SolverOptions giving(double largest) const {
