@@ -68,12 +68,14 @@ FingerContacts queryFinger(const Shape& shape, const FingerShape& finger, const 
   std::uint32_t memory = tracker.main.ball.memory;
   for (CoreTracker& foot : tracker.feet) foot.ball.memory = ++memory;
   if (std::holds_alternative<PadTip>(finger)) return queryPad(shape, finger, X_BF, margin, tracker, cache);
-  const CoreDescent deepest = descend(shape, finger, X_BF, margin, tracker.main, cache);
   FingerContacts out;
+  const auto* const capsule = std::get_if<CapsuleTip>(&finger);
+  const bool is_on_solid = capsule && !std::holds_alternative<Mesh>(shape);
+  if (is_on_solid && touchOnFacets(shape, finger, X_BF, margin, tracker, cache, out)) return out;
+  const CoreDescent deepest = descend(shape, finger, X_BF, margin, tracker.main, cache);
   out.queries = deepest.queries;
   for (int i = 0; i < deepest.found.count; ++i) add(deepest.found.points[static_cast<std::size_t>(i)], 0, out);
-  if (const auto* capsule = std::get_if<CapsuleTip>(&finger))
-    addEnds(shape, *capsule, X_BF, margin, deepest.c_F, tracker, cache, out);
+  if (capsule) addEnds(shape, *capsule, X_BF, margin, deepest.c_F, tracker, cache, out);
   return out;
 }
 

@@ -18,6 +18,15 @@ void onSupport(const Shape& core, double rounding, const Pose& X_BF, const Shape
 
 }  // namespace
 
+void capsuleOnShape(const CapsuleTip& capsule, const Pose& X_BF, const Shape& body, double margin,
+                    const Vec3& last_n_B, PairPoints& out) {
+  out.count = 0;
+  if (std::holds_alternative<Sphere>(body) || !isConvex(body)) return;
+  const double half = capsule.half_F.norm();
+  const Pose X_BK{X_BF.q * Quat(frameFromNormal(capsule.half_F / half)), X_BF.p};
+  collidePadWithConvex(Capsule{capsule.radius, half}, 0, X_BK, body, margin, last_n_B, out);
+}
+
 void padOnShape(const PadTip& pad, const Pose& X_BF, const Shape& body, double margin, const Vec3& last_n_B,
                 PatchCache& cache, PairPoints& out) {
   out.count = 0;

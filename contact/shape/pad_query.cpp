@@ -16,6 +16,36 @@ namespace {
 
 constexpr double kApartOnPad = 1e-3;  // of the pad's size: two places nearer than that are one
 
+void add(const SurfaceContact& point, FingerContacts& out) {
+  PINCER_ASSERT(out.count < kMaxFingerContacts);
+  const auto i = static_cast<std::size_t>(out.count++);
+  out.points[i] = point;
+  out.p_BT[i] = point.p_BS + point.phi * point.n_B;
+}
+
+bool isBefore(const PairPoint& x, const PairPoint& y) {
+  return x.phi < y.phi || (x.phi == y.phi && x.feature < y.feature);
+}
+// The deepest first; of more than there is room for the deepest.
+FingerContacts contactsOf(const PairPoints& patch) {
+  std::array<const PairPoint*, kMaxPairPoints> order;
+  int sorted = 0;
+  for (; sorted < patch.count; ++sorted) {
+    const PairPoint* const p = &patch.points[static_cast<std::size_t>(sorted)];
+    auto at = static_cast<std::size_t>(sorted);
+    for (; at > 0 && isBefore(*p, *order[at - 1]); --at) order[at] = order[at - 1];
+    order[at] = p;
+  }
+  FingerContacts found;
+  found.queries = 1;
+  const int count = std::min(patch.count, kMaxFingerContacts);
+  for (int i = 0; i < count; ++i) {
+    const PairPoint& p = *order[static_cast<std::size_t>(i)];
+    add({p.p_W - 0.5 * p.phi * p.n_W, p.n_W, p.phi, p.feature}, found);
+  }
+  return found;
+}
+
 class PadQuery {
  public:
   PadQuery(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin, FingerTracker& tracker,
@@ -29,7 +59,11 @@ class PadQuery {
         tracker_(tracker),
         cache_(cache) {}
 
-  FingerContacts run() { return std::holds_alternative<Mesh>(shape_) ? onMesh() : onSolid(); }
+  FingerContacts run() {
+    if (std::holds_alternative<Mesh>(shape_)) return onMesh();
+    FingerContacts found;
+    return touchOnFacets(shape_, finger_, X_BF_, margin_, tracker_, cache_, found) ? found : nearest();
+  }
 
  private:
   FingerContacts nearest() {
@@ -38,51 +72,6 @@ class PadQuery {
     out.queries = deepest.queries;
     for (int i = 0; i < deepest.found.count; ++i) add(deepest.found.points[static_cast<std::size_t>(i)], out);
     return out;
-  }
-
-  static void add(const SurfaceContact& point, FingerContacts& out) {
-    PINCER_ASSERT(out.count < kMaxFingerContacts);
-    const auto i = static_cast<std::size_t>(out.count++);
-    out.points[i] = point;
-    out.p_BT[i] = point.p_BS + point.phi * point.n_B;
-  }
-
-  // The normal of a solid's last patch stays where meshes keep the followed contact.
-  Vec3& lastNormal() { return tracker_.main.ball.slots[0].n_B; }
-
-  FingerContacts onSolid() {
-    PairPoints patch;
-    padOnShape(pad_, X_BF_, shape_, margin_, tracker_.main.warm ? lastNormal() : Vec3(Vec3::Zero()), cache_, patch);
-    if (patch.count == 0) return nearest();
-    const FingerContacts found = contactsOf(patch);
-    const SurfaceContact& main = found.main();
-    lastNormal() = main.n_B;
-    tracker_.main.c_F = X_BF_.inverse() * (main.p_BS + (main.phi + pad_.rounding) * main.n_B);
-    tracker_.main.warm = true;
-    return found;
-  }
-
-  static bool isBefore(const PairPoint& x, const PairPoint& y) {
-    return x.phi < y.phi || (x.phi == y.phi && x.feature < y.feature);
-  }
-  // The deepest first; of more than there is room for the deepest.
-  static FingerContacts contactsOf(const PairPoints& patch) {
-    std::array<const PairPoint*, kMaxPairPoints> order;
-    int sorted = 0;
-    for (; sorted < patch.count; ++sorted) {
-      const PairPoint* const p = &patch.points[static_cast<std::size_t>(sorted)];
-      auto at = static_cast<std::size_t>(sorted);
-      for (; at > 0 && isBefore(*p, *order[at - 1]); --at) order[at] = order[at - 1];
-      order[at] = p;
-    }
-    FingerContacts found;
-    found.queries = 1;
-    const int count = std::min(patch.count, kMaxFingerContacts);
-    for (int i = 0; i < count; ++i) {
-      const PairPoint& p = *order[static_cast<std::size_t>(i)];
-      add({p.p_W - 0.5 * p.phi * p.n_W, p.n_W, p.phi, p.feature}, found);
-    }
-    return found;
   }
 
   FingerContacts onMesh() {
@@ -299,6 +288,25 @@ class PadQuery {
 };
 
 }  // namespace
+
+bool touchOnFacets(const Shape& solid, const FingerShape& finger, const Pose& X_BF, double margin,
+                   FingerTracker& tracker, PatchCache& cache, FingerContacts& found) {
+  // The normal of a solid's last patch stays where meshes keep the followed contact.
+  Vec3& last_n_B = tracker.main.ball.slots[0].n_B;
+  const Vec3 from_n_B = tracker.main.warm ? last_n_B : Vec3(Vec3::Zero());
+  PairPoints patch;
+  if (const auto* capsule = std::get_if<CapsuleTip>(&finger))
+    capsuleOnShape(*capsule, X_BF, solid, margin, from_n_B, patch);
+  else
+    padOnShape(std::get<PadTip>(finger), X_BF, solid, margin, from_n_B, cache, patch);
+  if (patch.count == 0) return false;
+  found = contactsOf(patch);
+  const SurfaceContact& main = found.main();
+  last_n_B = main.n_B;
+  tracker.main.c_F = X_BF.inverse() * (main.p_BS + (main.phi + roundingOf(finger)) * main.n_B);
+  tracker.main.warm = true;
+  return true;
+}
 
 FingerContacts queryPad(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin,
                         FingerTracker& tracker, PatchCache& cache) {

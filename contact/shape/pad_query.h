@@ -8,6 +8,11 @@
 
 namespace pincer::contact {
 
+// Of a finger that is a PadTip or a CapsuleTip with a solid: what the two share. False if there is none within the
+// margin (of a capsule with a body that isn't convex, too): one nearest place is all there is to find.
+bool touchOnFacets(const Shape& solid, const FingerShape& finger, const Pose& X_BF, double margin,
+                   FingerTracker& tracker, PatchCache& cache, FingerContacts& found);
+
 // As queryFinger, of a finger that is a PadTip.
 FingerContacts queryPad(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin,
                         FingerTracker& tracker, PatchCache& cache);
