@@ -18,8 +18,8 @@ void onSupport(const Shape& core, double rounding, const Pose& X_BF, const Shape
 
 }  // namespace
 
-void capsuleOnShape(const CapsuleTip& capsule, const Pose& X_BF, const Shape& body, double margin,
-                    const Vec3& last_n_B, PairPoints& out) {
+void capsuleOnShape(const CapsuleTip& capsule, const Pose& X_BF, const Shape& body, double margin, const Vec3& last_n_B,
+                    PairPoints& out) {
   out.count = 0;
   if (std::holds_alternative<Sphere>(body) || !isConvex(body)) return;
   const double half = capsule.half_F.norm();

@@ -20,8 +20,8 @@
 namespace pincer::contact {
 
 // A capsule's points, as padOnShape's; none where the body isn't convex.
-void capsuleOnShape(const CapsuleTip& capsule, const Pose& X_BF, const Shape& body, double margin,
-                    const Vec3& last_n_B, PairPoints& out);
+void capsuleOnShape(const CapsuleTip& capsule, const Pose& X_BF, const Shape& body, double margin, const Vec3& last_n_B,
+                    PairPoints& out);
 
 // The points nearer than `margin` >= 0 [m], in the body's frame B, normals out of the body, sorted by
 // feature; none for spheres. `last_n_B`: a normal of the last ones, or zero: where the search begins.

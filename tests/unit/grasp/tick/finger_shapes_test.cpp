@@ -190,6 +190,23 @@ TEST(FingerShape, CapsuleThatLiesFlatTouchesWithBothEnds) {
 
 // The smooth surface of a mesh of 40 mm: as on the sphere that it stands for, but for
 // the mesh's own 3 um (docs/benchmarks.md).
+// Between its own ends it touched at one place: a rod that was shorter than the tip wobbled about that.
+TEST(FingerShape, CapsuleThatIsLongerThanWhatItHoldsTouchesWithBothEndsOfThat) {
+  FingerTracker tracker;
+  PatchCache cache(1);
+  const Pose X_BF{tests::about(Vec3(1, 0, 0), 1e-3), Vec3(0, 0, 0.015 + 0.005 - 1e-5)};
+  const Shape rod = Capsule{0.015, 0.01}, lying = Cylinder{0.015, 0.01}, bar = Box{Vec3(0.015, 0.01, 0.015)};
+  for (const Shape& body : {rod, lying, bar}) {
+    const bool is_bar = std::holds_alternative<Box>(body);
+    const Pose X_WB{is_bar ? Quat::Identity() : tests::about(Vec3(1, 0, 0), M_PI / 2), Vec3::Zero()};
+    const FingerContacts found =
+        queryFinger(body, CapsuleTip{0.005, Vec3(0, 0.02, 0)}, X_WB.inverse() * X_BF, 1e-3, tracker = {}, cache);
+    ASSERT_EQ(found.count, 2);
+    EXPECT_NEAR((found.points[0].p_BS - found.points[1].p_BS).norm(), 0.02, 1e-4);
+    EXPECT_NEAR(found.points[1].phi - found.points[0].phi, 0.02 * 1e-3, 1e-7);
+  }
+}
+
 TEST(FingerShape, FeelsTheSmoothSurfaceOfAMesh) {
   RandomNumbers random(8);
   const Shape mesh = Mesh{SmoothMesh::build(icosphere(0.04, 3))}, ball = Sphere{0.04};
