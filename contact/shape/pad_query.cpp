@@ -152,31 +152,45 @@ class PadQuery {
     return (features.triangle(slot.triangle).n - main.n_B).squaredNorm() < kSameNormal * kSameNormal;
   }
 
-  // True if the flat triangles are the surface where the smooth one is touched: they answer with its normal in more
-  // than one place, no shallower, and there and halfway between two of these the surface has their gap.
-  bool isFlat(const PairPoints& patch, const SurfaceContact& main) {
-    const double same_gap = 1e-6 * size_;
+  // True if the flat triangles are the surface where the smooth one is touched: they answer with a normal like its own
+  // in more than one place, no shallower, and there and halfway between two of these the surface has their gap. Of two
+  // faces with a gap between them, as of a gear's teeth, only the points stay that have it.
+  bool isFlat(PairPoints& patch, const SurfaceContact& main) {
+    PairPoint *const first = patch.points.data(), *const end = first + patch.count;
     const PairPoint *deepest = nullptr, *furthest = nullptr;
-    const auto visitAlike = [&](const auto& visit) {
-      for (int i = 0; i < patch.count; ++i) {
-        const PairPoint& p = patch.points[static_cast<std::size_t>(i)];
-        if ((p.n_W - main.n_B).squaredNorm() < kSameNormal * kSameNormal) visit(p);
-      }
+    for (const PairPoint* p = first; p != end; ++p) {
+      if (faces(p->n_W, main.n_B) && (!deepest || p->phi < deepest->phi)) deepest = p;
+    }
+    if (!deepest || deepest->phi > main.phi - slotOf(main).ease + sameGap()) return false;
+    const auto wayTo = [&](const PairPoint& p) { return (p.p_W - deepest->p_W).norm(); };
+    const auto isApart = [&](const PairPoint& p) { return faces(p.n_W, main.n_B) && wayTo(p) > kApartOnPad * size_; };
+    for (const PairPoint* p = first; p != end; ++p) {
+      if (isApart(*p) && (!furthest || wayTo(*p) > wayTo(*furthest))) furthest = p;
+    }
+    if (!furthest || !isLevel(*deepest)) return false;
+    if (isLevelBetween(*deepest, *furthest)) return true;
+    const auto isPartner = [&](const PairPoint& p) {
+      return &p != furthest && isApart(p) && isLevelBetween(*deepest, p);
     };
-    visitAlike([&](const PairPoint& p) { deepest = !deepest || p.phi < deepest->phi ? &p : deepest; });
-    if (!deepest || deepest->phi > main.phi - slotOf(main).ease + same_gap) return false;
-    double way = kApartOnPad * size_;
-    visitAlike([&](const PairPoint& p) {
-      if (const double d = (p.p_W - deepest->p_W).norm(); d > way) way = d, furthest = &p;
-    });
-    if (!furthest) return false;
-    const auto isLevel = [&](const Vec3& p_W, double phi) {
-      SurfaceTracker tracker = triedBall();
-      const Vec3 p_BC = p_W + (0.5 * phi + pad_.rounding) * main.n_B;
-      return std::abs(querySphere(shape_, p_BC, pad_.rounding, 0, tracker, cache_).main().phi - phi) < same_gap;
-    };
-    return isLevel(deepest->p_W, deepest->phi) &&
-           isLevel(0.5 * (deepest->p_W + furthest->p_W), 0.5 * (deepest->phi + furthest->phi));
+    if (std::none_of(first, end, isPartner)) return false;
+    const auto isOff = [&](const PairPoint& p) { return !isLevel(p); };
+    patch.count = static_cast<int>(std::remove_if(first, end, isOff) - first);
+    return true;
+  }
+
+  double sameGap() const { return 1e-6 * size_; }
+  bool isLevelBetween(const PairPoint& a, const PairPoint& b) {
+    return isLevel({0.5 * (a.p_W + b.p_W), (a.n_W + b.n_W).normalized(), 0.5 * (a.phi + b.phi), 0});
+  }
+
+  // True if the surface has the point's gap: that of a plane, seen along its own normal, where that isn't the point's.
+  // A pad leans on a corner of the mesh with the normal of its own face.
+  bool isLevel(const PairPoint& point) {
+    SurfaceTracker tracker = triedBall();
+    const double height = point.phi + pad_.rounding;
+    const Vec3 p_BC = point.p_W + (0.5 * point.phi + pad_.rounding) * point.n_W;
+    const SurfaceContact found = querySphere(shape_, p_BC, pad_.rounding, 0, tracker, cache_).main();
+    return std::abs(found.phi + pad_.rounding - height * found.n_B.dot(point.n_W)) < sameGap();
   }
 
   // From where the main contact is, with a memory that isn't the main one's.

@@ -63,6 +63,42 @@ TEST(PadOnMesh, StandsOnTheCornersOfWhatItSharesWithAFace) {
   }
 }
 
+// Leaning by 2e-4 rad it touched a box of 10 x 8 mm at one place: the mesh's corners have the pad's normal, which was
+// none of the face's. Pads without a patch_radius threw such a box out, in the first tick that it was nudged in.
+TEST(PadOnMesh, StandsOnTheCornersOfAFaceThatIsSmallerThanThePadWhileItLeans) {
+  const Vec3 half(0.005, 0.004, 0.01);
+  for (const double lean : {0.0, 2e-4, 1e-3, 1e-2}) {
+    const Pose X_BF{tests::about(Vec3(0.6, 0.8, 0), lean), Vec3(0, 0, half.z() + kThin + kRound - kPressed)};
+    FingerTracker on_mesh, on_solid;
+    PatchCache cache(256);
+    const FingerContacts found = queryFinger(smooth(box(half)), squarePad(), X_BF, 1e-3, on_mesh, cache);
+    const FingerContacts right = queryFinger(Box{half}, squarePad(), X_BF, 1e-3, on_solid, cache);
+    ASSERT_EQ(found.count, 4) << lean;
+    ASSERT_EQ(right.count, 4) << lean;
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(found.points[k].phi, right.points[k].phi, lean * lean * 1e-3 + 1e-12) << lean << ' ' << k;
+      EXPECT_LT((found.points[k].p_BS - right.points[k].p_BS).norm(), lean * 1e-3 + 1e-9) << lean << ' ' << k;
+    }
+  }
+}
+
+// Halfway between two ribs there is no surface: the pad was taken for one on a curved mesh, which stands on any places
+// of the ribs' edges.
+TEST(PadOnMesh, StandsOnTheCornersOfTwoRibs) {
+  TriangleMesh ribs = transformed(box(Vec3(0.001, 0.005, 0.01)), {Quat::Identity(), Vec3(-0.004, 0, 0)});
+  const TriangleMesh other = transformed(box(Vec3(0.001, 0.005, 0.01)), {Quat::Identity(), Vec3(0.004, 0, 0)});
+  const auto shift = static_cast<std::int32_t>(ribs.vertices.size());
+  ribs.vertices.insert(ribs.vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto& t : other.triangles) ribs.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  const FingerContacts found = padOnTop(smooth(ribs), 0.01);
+  ASSERT_GE(found.count, 4);
+  EXPECT_EQ(countAtDepth(found, 1e-12), found.count);
+  EXPECT_NEAR(spanOf(found).max().x(), 0.005, 1e-9);
+  EXPECT_NEAR(spanOf(found).min().x(), -0.005, 1e-9);
+  EXPECT_NEAR(spanOf(found).max().y(), 0.005, 1e-9);
+  EXPECT_NEAR(spanOf(found).min().y(), -0.005, 1e-9);
+}
+
 TEST(PadOnMesh, StandsOnALineOfAStraightWall) {
   const TriangleMesh upright = lathe({{0, -0.03}, {0.018, -0.03}, {0.018, 0.03}, {0, 0.03}}, 48);
   const Shape lying = smooth(transformed(upright, {tests::about(Vec3(0, 1, 0), M_PI / 2), Vec3::Zero()}));
