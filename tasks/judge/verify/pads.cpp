@@ -12,110 +12,11 @@
 
 #include "pincer/contact/generated_meshes.h"
 #include "pincer/contact/mesh/lathe.h"
-#include "pincer/contact/polytope.h"
-#include "pincer/contact/smooth_mesh.h"
-#include "pincer/grasp/step.h"
-#include "pincer/tasks/judge/verify/scene_run.h"
+#include "pincer/tasks/judge/verify/pad_run.h"
 #include "pincer/tasks/judge/verify/verify.h"
 
 namespace pincer::tasks {
 namespace {
-
-constexpr double kHalfThickness = 2e-3;  // of a pad, along x [m]
-constexpr double kRounding = 5e-4;       // of its edges [m]
-constexpr double kUp = 0.1;              // height of the object's centre [m]
-constexpr double kBesideMoment = 1e-4;   // of inertia of the object whose centre of mass is given [kg m^2]
-
-contact::PadTip flatPad(double width) {
-  const double a = 0.5 * width - kRounding, b = kHalfThickness - kRounding;
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? b : -b, i & 2 ? a : -a, i & 4 ? a : -a});
-  return {contact::Polytope::hullOf(corners, "pad"), kRounding};
-}
-
-struct PadGrip {
-  contact::Shape shape;
-  double half = 0.015;  // of the object along x [m]
-  double mass = 0.1, mu = 0.6;
-  double width = 0.02;                                     // of the pads [m]
-  std::optional<contact::FingerShape> tip = std::nullopt;  // in their place
-  double tip_reach = kHalfThickness;                       // of the tip from its centre along x [m]
-  double patch_radius = 0;                                 // [m]
-  double turn_stiffness = 0;                               // [N m/rad]
-  double beside = 0;                                       // the object's centre of mass from its middle along y [m]
-  Vec3 off = Vec3::Zero();                                 // of the pads from the object's middle [m]
-  double press = 15;                                       // N [N]
-  double seconds = 60;                                     // held for
-  Vec3 stiffness = Vec3::Constant(5000);                   // along x: 0 presses with a force, else with a spring [N/m]
-  Eigen::Array<bool, 3, 1> locked{false, false, false};
-  Vec3 gravity_W{0, 0, -kVerifyG};
-  Vec3 w_W = Vec3::Zero();       // of the object at the start [rad/s]
-  Quat q_WB = Quat::Identity();  // the same
-  double along = 0;              // the object's frame from its middle, along x [m]
-};
-
-// An object between two pads at -x and +x, which just touch it.
-class PadRun {
- public:
-  explicit PadRun(const PadGrip& grip) : grip_(grip) {
-    engine::WorldOptions options;
-    options.gravity_W = grip.gravity_W;
-    engine::WorldBuilder builder(options);
-    engine::BodySpec object{"object", grip.shape, true, grip.mass, {grip.mu, grip.mu}};
-    if (grip.beside > 0)
-      object.inertia = engine::GivenInertia{Vec3(0, grip.beside, 0), kBesideMoment * Mat3::Identity()};
-    builder.addBody(object);
-    std::vector<grasp::FingerModel> fingers(2);
-    std::vector<Vec3> places;
-    for (int i = 0; i < 2; ++i) {
-      grasp::FingerModel& f = fingers[static_cast<std::size_t>(i)];
-      f.name = i == 0 ? "left" : "right";
-      f.shape = grip.tip ? *grip.tip : flatPad(grip.width);
-      f.pad.patch_radius = grip.patch_radius;
-      f.coupling.turn_stiffness = grip.turn_stiffness;
-      f.coupling.turn_damping = 1e-2 * grip.turn_stiffness;
-      f.coupling.stiffness = grip.stiffness;
-      f.coupling.damping = Vec3::Constant(5);
-      f.coupling.locked = grip.locked;
-      if (!(grip.stiffness.x() > 0)) f.coupling.mass = 0.05;
-      places.push_back(Vec3(sideOf(i) * (grip.half + grip.tip_reach), 0, kUp) + grip.off);
-    }
-    model = grasp::buildGrasp(std::move(builder), fingers);
-    engine::BodyStart start;
-    start.X_WB = {grip.q_WB, Vec3(grip.along, 0, kUp)};
-    start.w_W = grip.w_W;
-    state = grasp::makeState(model, {start}, places);
-    scratch_ = grasp::makeScratch(model);
-  }
-
-  // One tick to where the left pad is displaced by `d`, the right one by `sign` d, at the velocity `v` and `sign` v.
-  void tick(const Vec3& d = Vec3::Zero(), const Vec3& v = Vec3::Zero(), double sign = 1) {
-    const bool sprung = grip_.stiffness.x() > 0;
-    for (int i = 0; i < 2; ++i) {
-      const double way = i == 0 ? 1 : sign, deep = sprung ? grip_.press / grip_.stiffness.x() : 0;
-      grasp::FingerInput& in = inputs_[static_cast<std::size_t>(i)];
-      in.p_WF = Vec3(sideOf(i) * (grip_.half + grip_.tip_reach - deep), 0, kUp) + grip_.off + way * d;
-      in.v_WF = way * v;
-      in.f_W = sprung ? Vec3(Vec3::Zero()) : Vec3(-sideOf(i) * grip_.press, 0, 0);
-    }
-    flagged += grasp::step(model, state, *scratch_, inputs_).status != engine::kStepOk;
-    ++ticks;
-  }
-  double time() const { return static_cast<double>(ticks) * model.world.options.h; }
-  const Vec3& place() const { return state.world.bodies[0].X_WI.p; }
-  const Quat& turned() const { return state.world.bodies[0].X_WI.q; }
-  Vec3 padsPlace() const { return 0.5 * (state.world.points[0].p_W + state.world.points[1].p_W); }
-
-  grasp::GraspModel model;
-  grasp::GraspState state;
-  std::int64_t ticks = 0, flagged = 0;
-
- private:
-  static double sideOf(int finger) { return finger == 0 ? -1 : 1; }
-  PadGrip grip_;
-  grasp::ScratchHandle scratch_;
-  std::array<grasp::FingerInput, 2> inputs_;
-};
 
 const contact::Shape kBrick = contact::Box{Vec3(0.015, 0.02, 0.025)};  // half sides [m]
 
@@ -160,18 +61,6 @@ Measurement tipOf(const char* name, const contact::FingerShape& tip, double reac
   grip.w_W = Vec3(0, 0.3, 0);
   return {name, [grip](MeasureContext& context) { return hold(grip, context); }};
 }
-
-// A prism of 24 sides, as a pad whose face is round.
-contact::PadTip roundPad(double width) {
-  std::vector<Vec3> corners;
-  for (int i = 0; i < 48; ++i) {
-    const double a = 2 * M_PI * (i / 2) / 24, r = 0.5 * width - kRounding, b = kHalfThickness - kRounding;
-    corners.push_back({i & 1 ? b : -b, r * math::cos(a), r * math::sin(a)});
-  }
-  return {contact::Polytope::hullOf(corners, "round pad"), kRounding};
-}
-
-contact::Shape smooth(const contact::TriangleMesh& mesh) { return contact::Mesh{contact::SmoothMesh::build(mesh)}; }
 
 // How a solid lies between the pads.
 struct Lie {

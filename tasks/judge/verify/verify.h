@@ -13,6 +13,7 @@ std::vector<Measurement> verifyMeasurements();
 // Its parts, one source file each.
 std::vector<Measurement> verifyPinches();
 std::vector<Measurement> verifyPads();
+std::vector<Measurement> verifyGripFamilies();
 std::vector<Measurement> verifySliding();
 std::vector<Measurement> verifyRolling();
 std::vector<Measurement> verifyFreeBodies();
