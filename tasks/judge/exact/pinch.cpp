@@ -1,6 +1,8 @@
 #include "pincer/tasks/judge/exact/pinch.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/tasks/judge/exact/runge_kutta.h"
@@ -83,6 +85,63 @@ PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radiu
     t += h;
   }
   return {y.head<2>(), y[2], t};
+}
+
+Vec2 ShakenGrip::target(double time) const {
+  return swing * std::min(time, 1.0) * math::sin(2 * M_PI * hertz * time) * along;
+}
+
+Vec2 ShakenGrip::targetSpeed(double time) const {
+  const double w = 2 * M_PI * hertz, grows = time < 1 ? math::sin(w * time) : 0;
+  return swing * (std::min(time, 1.0) * w * math::cos(w * time) + grows) * along;
+}
+
+namespace {
+
+constexpr double kShakenStep = 4e-6;  // [s]
+
+// Box and pads, from where they hang at rest.
+struct ShakenState {
+  Vec2 p_box, p_pad, v_box = Vec2::Zero(), v_pad = Vec2::Zero();
+
+  explicit ShakenState(const ShakenGrip& grip) : p_box(0, -0.5 * grip.mass * grip.g / grip.stiffness), p_pad(p_box) {}
+
+  // One step with friction of at most `most` [N]; returns the friction that would end the slip in it.
+  double step(const ShakenGrip& grip, double time, double most) {
+    const Vec2 spring =
+        2 * grip.stiffness * (grip.target(time) - p_pad) + 2 * grip.damping * (grip.targetSpeed(time) - v_pad);
+    v_box += kShakenStep * Vec2(0, -grip.g);
+    v_pad += kShakenStep / (2 * grip.pad_mass) * spring;
+    const Vec2 ends = (v_pad - v_box) / (1 / grip.mass + 0.5 / grip.pad_mass);
+    const double needed = ends.norm() / kShakenStep;
+    const Vec2 impulse = needed > most ? Vec2(ends * (most / needed)) : ends;
+    v_box += impulse / grip.mass;
+    v_pad -= impulse / (2 * grip.pad_mass);
+    p_box += kShakenStep * v_box;
+    p_pad += kShakenStep * v_pad;
+    return needed;
+  }
+};
+
+}  // namespace
+
+double ShakenGrip::leastFriction(double seconds) const {
+  ShakenState state(*this);
+  double most = 0;
+  for (int i = 0; i < seconds / kShakenStep; ++i)
+    most = std::max(most, state.step(*this, (i + 0.5) * kShakenStep, std::numeric_limits<double>::infinity()));
+  return most / (2 * press);
+}
+
+std::vector<Vec2> ShakenGrip::slips(int ticks, double h) const {
+  ShakenState state(*this);
+  std::vector<Vec2> slips;
+  const int steps = static_cast<int>(h / kShakenStep + 0.5);
+  for (int i = 0; i < ticks * steps; ++i) {
+    state.step(*this, (i + 0.5) * kShakenStep, 2 * mu * press);
+    if ((i + 1) % steps == 0) slips.push_back(state.p_box - state.p_pad);
+  }
+  return slips;
 }
 
 }  // namespace pincer::exact

@@ -58,4 +58,20 @@ struct PlateRest {
 PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radius, double friction_force,
                                const Vec2& v0, double w0);
 
+// --- Box between two pads on springs whose targets shake
+// Point model: box p_b (m), both pads p_p (2 m_p) behind 2 k and 2 c towards the target
+//   t(time) = swing min(time/1 s, 1) sin(2 pi hertz time) along,   friction F on the box, |F| <= 2 mu N:
+//   m p_b'' = m g + F,   2 m_p p_p'' = 2 k (t - p_p) + 2 c (t' - p_p') - F,   sticks as long as it can
+// Integrated at 4 us, velocity first; friction as the impulse that ends the slip within the step, or its limit.
+struct ShakenGrip {
+  double mass, pad_mass, stiffness, damping, press, mu, swing, hertz;
+  Vec2 along;  // across and up, in the pads' plane
+  double g;
+
+  Vec2 target(double time) const;
+  Vec2 targetSpeed(double time) const;
+  double leastFriction(double seconds) const;          // with which the box sticks all the time
+  std::vector<Vec2> slips(int ticks, double h) const;  // of the box past its pads after each tick [m]
+};
+
 }  // namespace pincer::exact

@@ -3,10 +3,17 @@
 //   tips   every kind of fingertip, 5 to 40 mm wide: nudged, shaken by 5 mm at 5 Hz, turned by a quarter about each
 //          axis; from a second later on the object stays where it is in the hand
 //   rods   the angle d/(2 R) of a rod that pads roll by d, at radii, widths, speeds and headings
+//   slip   a box between pads that shake it at .98 of the friction that would hold it: the point model of exact/pinch.h
+//   objects  a box, a cylinder, a mug by its handle, six meshes between flat pads
 //   many   n pinches in one world, their forces swinging by a tenth: each holds as it does alone
 #include <fmt/format.h>
 
+#include <cmath>
+#include <string>
+#include <tuple>
+
 #include "pincer/contact/generated_meshes.h"
+#include "pincer/tasks/judge/exact/pinch.h"
 #include "pincer/tasks/judge/verify/pad_run.h"
 #include "pincer/tasks/judge/verify/verify.h"
 
@@ -84,8 +91,8 @@ HandMotion motionAt(Deed deed, double t, double of) {
   return hand;
 }
 
-void holdWhile(Deed deed, const PadGrip& grip, Worst& worst) {
-  constexpr double kRest = 1;  // before it is judged [s]
+// Judged from `rest` seconds after the deed on.
+void holdWhile(Deed deed, const PadGrip& grip, double rest, Worst& worst) {
   PadRun run(grip);
   HandMotion hand;
   if (deed != Deed::kNudged) {
@@ -94,7 +101,7 @@ void holdWhile(Deed deed, const PadGrip& grip, Worst& worst) {
     for (int i = 1; i <= ticks; ++i) run.tick(hand = motionAt(deed, 1e-3 * i, 1e-3 * ticks));
     hand = {hand.q, hand.d};
   }
-  for (const double end = run.time() + kRest; run.time() < end;) run.tick(hand);
+  for (const double end = run.time() + rest; run.time() < end;) run.tick(hand);
   const Pose was = run.inHand(hand.q);
   for (const double end = run.time() + grip.seconds; run.time() < end;) {
     run.tick(hand);
@@ -116,12 +123,53 @@ std::vector<Record> tips(MeasureContext& context) {
           grip.patch_radius = tip.is_flat && !held.is_round ? 0 : 0.004;
           grip.w_W = Vec3(0.2, -0.1, 0.2);
           grip.seconds = context.thorough ? 60 : 1;
-          holdWhile(static_cast<Deed>(deed), grip, worst);
+          holdWhile(static_cast<Deed>(deed), grip, 1, worst);
         }
       }
     }
   }
   return worst.records(context.thorough ? "in 60 s" : "in 1 s");
+}
+
+// The scene's mug, held by its handle: 62 mm beside its centre of mass.
+PadGrip mugGrip() {
+  PadGrip grip{contact::Sphere{0.01}};
+  grip.half = 0.004;
+  grip.mass = 0.3;
+  grip.mu = 0.8;
+  grip.press = 60;
+  grip.shapes = readBuiltinScene("mug").bodies[1].shapes;
+  for (engine::ColliderSpec& part : grip.shapes) part.X_BS.p -= Vec3(0.067, 0, 0.05);
+  return grip;
+}
+
+// Nudged, held for a minute with --long; meshes behind a patch_radius of 4 mm.
+std::vector<Record> heldByPads(MeasureContext& context) {
+  constexpr double kStill = 1e-6;  // [um]
+  std::vector<std::tuple<std::string, PadGrip, double>> grips = {
+      {"box", {contact::Box{Vec3(0.015, 0.02, 0.025)}}, kStill},
+      {"cylinder", {contact::Cylinder{0.015, 0.03}}, kStill},
+      {"mug", mugGrip(), kStill}};
+  for (const HeldMesh& held : heldMeshes()) {
+    PadGrip grip{held.shape, 0.02};
+    grip.patch_radius = 0.004;
+    grips.emplace_back(held.name, grip, held.most_slip);
+  }
+  std::vector<Record> records;
+  double flagged = 0;
+  for (auto& [name, grip, most_slip] : grips) {
+    Worst worst;
+    for (const double width : {0.02, 0.03}) {
+      grip.width = width;
+      grip.w_W = Vec3(0.2, -0.1, 0.2);
+      grip.seconds = context.thorough ? 60 : 1;
+      holdWhile(Deed::kNudged, grip, 4, worst);
+    }
+    records.push_back(atMost("slip of a " + name, 1e6 * worst.slip, "um", most_slip));
+    flagged += worst.flagged;
+  }
+  records.push_back(exactly("flagged ticks", flagged, "-", 0));
+  return records;
 }
 
 // Angle against rolling without slip, the worst over `strokes` to and fro [rad].
@@ -176,8 +224,115 @@ std::vector<Record> rods(MeasureContext& context) {
           exactly("flagged ticks", worst.flagged, "-", 0)};
 }
 
+// The pads' targets go 20 mm to and fro at 5 Hz for 3 s, at `heading` from the horizontal in the pads' plane. A point
+// model has no lever: what has slipped aside of its pads turns a little in the same swing.
+std::vector<Record> slipsShaken(double heading, double most_off, MeasureContext&) {
+  exact::ShakenGrip shaken{0.15, 0.05, 2000, 5, 10, 0, 0.02, 5, Vec2(math::cos(heading), math::sin(heading)), kVerifyG};
+  shaken.mu = 0.98 * shaken.leastFriction(3);
+  const std::vector<Vec2> exact = shaken.slips(3000, 1e-3);
+  PadGrip grip{contact::Box{Vec3(0.015, 0.02, 0.025)}};
+  grip.mass = shaken.mass;
+  grip.mu = shaken.mu;
+  grip.press = shaken.press;
+  grip.stiffness = Vec3(0, shaken.stiffness, shaken.stiffness);
+  PadRun run(grip);
+  for (int i = 0; i < 500; ++i) run.tick();
+  const Pose was = run.inHand(Quat::Identity());
+  double off = 0, way = 0, turn = 0;
+  for (int i = 1; i <= 3000; ++i) {
+    const Vec2 d = shaken.target(1e-3 * i), v = shaken.targetSpeed(1e-3 * i);
+    run.tick(Vec3(0, d.x(), d.y()), Vec3(0, v.x(), v.y()));
+    const Pose now = run.inHand(Quat::Identity());
+    const Vec2& right = exact[static_cast<std::size_t>(i - 1)];
+    off = std::max(off, (Vec2(now.p.tail<2>() - was.p.tail<2>()) - right).norm());
+    way = std::max(way, right.norm());
+    turn = std::max(turn, angleBetween(was.q, now.q));
+  }
+  return {unbounded("slip of the point model", 1e6 * way, "um"),
+          atMost("slip off that of the point model, over it", off / way, "-", most_off),
+          atMost("rotation", turn, "rad", 5e-4), exactly("flagged ticks", static_cast<double>(run.flagged), "-", 0)};
+}
+
+// `n` boxes between flat pads, 200 mm apart.
+class ManyGrips {
+ public:
+  explicit ManyGrips(int n) {
+    const int side = static_cast<int>(std::ceil(std::sqrt(n)));
+    engine::WorldBuilder builder{engine::WorldOptions{}};
+    std::vector<engine::BodyStart> starts;
+    std::vector<grasp::FingerModel> fingers;
+    std::vector<Vec3> places;
+    for (int i = 0; i < n; ++i) {
+      const Vec3 at(0.2 * (i % side), 0.2 * (i / side), kUp);
+      builder.addBody({fmt::format("box{}", i), contact::Box{Vec3(0.015, 0.02, 0.025)}, true, 0.1, {0.5, 0.5}});
+      starts.push_back({{Quat::Identity(), at}, Vec3::Zero(), Vec3(0.2, -0.1, 0.2)});
+      for (const double x : {-1.0, 1.0}) {
+        grasp::FingerModel& f = fingers.emplace_back();
+        f.name = fmt::format("{}{}", x < 0 ? "left" : "right", i);
+        f.shape = flatPad(0.02);
+        f.coupling.stiffness = Vec3(0, 2000, 2000);
+        f.coupling.mass = 0.05;
+        places.push_back(at + Vec3(x * (0.015 + kHalfThickness), 0, 0));
+        inputs_.emplace_back().p_WF = places.back();
+      }
+    }
+    model_ = grasp::buildGrasp(std::move(builder), fingers);
+    state_ = grasp::makeState(model_, starts, places);
+    scratch_ = grasp::makeScratch(model_);
+  }
+
+  void tick() {
+    constexpr double kPress = 10, kSwing = 0.1, kRate = 6 * M_PI;  // [N], of it, [rad/s]
+    const double time = 1e-3 * static_cast<double>(++ticks_);
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      const double swing = kSwing * math::sin(kRate * time + 0.1 * static_cast<double>(i / 2));
+      inputs_[i].f_W.x() = (i % 2 == 0 ? 1 : -1) * kPress * (1 + swing);
+    }
+    flagged += grasp::step(model_, state_, *scratch_, inputs_).status != engine::kStepOk;
+  }
+  Pose inHand(std::size_t i) const {
+    const auto& points = state_.world.points;
+    const Pose& X = state_.world.bodies[i].X_WI;
+    return {X.q, X.p - 0.5 * (points[2 * i].p_W + points[2 * i + 1].p_W)};
+  }
+  std::int64_t flagged = 0;
+
+ private:
+  grasp::GraspModel model_;
+  grasp::GraspState state_;
+  grasp::ScratchHandle scratch_;
+  std::vector<grasp::FingerInput> inputs_;
+  std::int64_t ticks_ = 0;
+};
+
+std::vector<Record> many(MeasureContext& context) {
+  const int seconds = context.thorough ? 60 : 1;
+  Worst worst;
+  for (const int n : context.thorough ? std::vector<int>{1, 2, 17, 100, 300, 1000} : std::vector<int>{1, 17, 100}) {
+    ManyGrips grips(n);
+    std::vector<Pose> was;
+    for (int i = 0; i < 1000; ++i) grips.tick();
+    for (int i = 0; i < n; ++i) was.push_back(grips.inHand(static_cast<std::size_t>(i)));
+    for (int tick = 0; tick < 1000 * seconds && !context.interrupted(); ++tick) {
+      grips.tick();
+      for (std::size_t i = 0; i < was.size(); ++i) worst.note(was[i], grips.inHand(i));
+    }
+    worst.flagged += static_cast<double>(grips.flagged);
+    worst.runs += n;
+  }
+  return worst.records(fmt::format("in {} s", seconds));
+}
+
 }  // namespace
 
-std::vector<Measurement> verifyGripFamilies() { return {{"pads/tips", tips}, {"pads/roll-rods", rods}}; }
+std::vector<Measurement> verifyGripFamilies() {
+  return {{"pads/tips", tips},
+          {"pads/objects", heldByPads},
+          {"pads/roll-rods", rods},
+          {"pads/slip-0.98-shaken", [](MeasureContext& c) { return slipsShaken(1, 0.02, c); }},
+          {"pads/slip-0.98-shaken-along", [](MeasureContext& c) { return slipsShaken(0.5 * M_PI, 0.02, c); }},
+          {"pads/slip-0.98-shaken-across", [](MeasureContext& c) { return slipsShaken(0, 0.03, c); }},
+          {"pads/many", many}};
+}
 
 }  // namespace pincer::tasks

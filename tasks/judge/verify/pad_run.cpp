@@ -1,5 +1,7 @@
 #include "pincer/tasks/judge/verify/pad_run.h"
 
+#include "pincer/contact/generated_meshes.h"
+#include "pincer/contact/mesh/lathe.h"
 #include "pincer/contact/polytope.h"
 #include "pincer/contact/smooth_mesh.h"
 
@@ -44,11 +46,31 @@ contact::PadTip roundPad(double width) {
 
 contact::Shape smooth(const contact::TriangleMesh& mesh) { return contact::Mesh{contact::SmoothMesh::build(mesh)}; }
 
+std::vector<HeldMesh> heldMeshes() {
+  using namespace contact;
+  const TriangleMesh spool = lathe({{0, -0.008},
+                                    {0.02, -0.008},
+                                    {0.02, -0.005},
+                                    {0.012, -0.002},
+                                    {0.012, 0.002},
+                                    {0.02, 0.005},
+                                    {0.02, 0.008},
+                                    {0, 0.008}},
+                                   64);
+  return {{"torus", smooth(torus(0.013, 0.007, 48, 32))},
+          {"spool", smooth(spool)},
+          {"round-edged cube", smooth(roundedCube(0.02, 0.006, 4)), 1e-2},
+          {"grooved block", smooth(grooveBlock(0.25 * M_PI, 0.01, 0.02, 0.015))},
+          {"hilly ball", smooth(bumpySphere(0.02, 0.08, 6, 12))},
+          {"scan", smooth(noisy(ellipsoid(Vec3(0.02, 0.019, 0.016), 12), 3e-5, 1))}};
+}
+
 PadRun::PadRun(const PadGrip& grip) : grip_(grip) {
   engine::WorldOptions options;
   options.gravity_W = grip.gravity_W;
   engine::WorldBuilder builder(options);
   engine::BodySpec object{"object", grip.shape, true, grip.mass, {grip.mu, grip.mu}};
+  object.shapes = grip.shapes;
   if (grip.beside > 0) object.inertia = engine::GivenInertia{Vec3(0, grip.beside, 0), kBesideMoment * Mat3::Identity()};
   builder.addBody(object);
   model = grasp::buildGrasp(std::move(builder), {fingerOf(grip, 0), fingerOf(grip, 1)});

@@ -2,6 +2,8 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "pincer/contact/triangle_mesh.h"
 #include "pincer/grasp/step.h"
@@ -16,6 +18,14 @@ constexpr double kUp = 0.1;              // height of the object's centre [m]
 contact::PadTip flatPad(double width);
 contact::PadTip roundPad(double width);  // a prism of 24 sides, as a pad whose face is round
 contact::Shape smooth(const contact::TriangleMesh& mesh);
+
+// Meshes 40 mm long along x: a torus, a spool, a cube with round edges, a grooved block, hills, a scan with its noise.
+struct HeldMesh {
+  std::string name;
+  contact::Shape shape;
+  double most_slip = 1e-6;  // between flat pads, of those that are known to creep [um]
+};
+std::vector<HeldMesh> heldMeshes();
 
 struct PadGrip {
   contact::Shape shape;
@@ -33,9 +43,10 @@ struct PadGrip {
   Vec3 stiffness = Vec3::Constant(5000);                   // along x: 0 presses with a force, else with a spring [N/m]
   Eigen::Array<bool, 3, 1> locked{false, false, false};
   Vec3 gravity_W{0, 0, -kVerifyG};
-  Vec3 w_W = Vec3::Zero();       // of the object at the start [rad/s]
-  Quat q_WB = Quat::Identity();  // the same
-  double along = 0;              // the object's frame from its middle, along x [m]
+  Vec3 w_W = Vec3::Zero();                        // of the object at the start [rad/s]
+  Quat q_WB = Quat::Identity();                   // the same
+  std::vector<engine::ColliderSpec> shapes = {};  // of the object, in place of `shape`
+  double along = 0;                               // the object's frame from its middle, along x [m]
 };
 
 // Motion of the hand that carries both tips, about the object's place at the start.

@@ -150,46 +150,60 @@ std::vector<Record> handover(MeasureContext& context) {
   return {atMost("moved in the handover 2 -> 4 -> 2", 1e6 * moved, "um", 1), atMost("turned", turned, "rad", 1e-5)};
 }
 
-constexpr int kRowBalls = 10;
+// Balls in a groove along x, pressed together by two fingers; one of them is heavier.
+struct BallRow {
+  int balls = 10, heavy = 0;
+  double heavier = 100, mu = 0.5;
+  double half_angle = std::numbers::pi / 4;  // of the groove, from the vertical [rad]
+  double press = 5;                          // [N]
+  double seconds = 10;
+};
 constexpr double kRowRadius = 0.008;  // of balls and fingertips [m]
 
-// Ten balls in a groove of 90 degrees along x, nine of 10 g and one of 1 kg, pressed together by two fingers with
-// `press` [N]. Returns how far one of them goes from 1 to 10 s at most [m]; adds to the ticks that were flagged.
-double pressRow(int heavy, double press, std::int64_t& flagged) {
-  const double up = std::numbers::sqrt2 * kRowRadius;
+grasp::FingerModel rowFinger(const char* name) {
+  grasp::FingerModel finger;
+  finger.name = name;
+  finger.radius = kRowRadius;
+  finger.coupling.stiffness.setZero();
+  finger.coupling.damping = Vec3(5, 0, 0);
+  finger.coupling.mass = 0.05;
+  finger.coupling.locked = {false, true, true};
+  return finger;
+}
+
+// Returns how far one of the balls, of 10 g, goes from 1 s on at most [m]; adds to the ticks that were flagged.
+double pressRow(const BallRow& row, std::int64_t& flagged) {
+  const double up = kRowRadius / math::sin(row.half_angle);
   engine::WorldBuilder builder{engine::WorldOptions{}};
   std::vector<engine::BodyStart> starts;
-  for (int i = 0; i < kRowBalls; ++i) {
-    builder.addBody({"ball" + std::to_string(i), contact::Sphere{kRowRadius}, true, i == heavy ? 1 : 0.01, {0.5, 0.5}});
+  for (int i = 0; i < row.balls; ++i) {
+    builder.addBody({"ball" + std::to_string(i),
+                     contact::Sphere{kRowRadius},
+                     true,
+                     i == row.heavy ? 0.01 * row.heavier : 0.01,
+                     {row.mu, row.mu}});
     starts.push_back({{Quat::Identity(), Vec3(2 * kRowRadius * i, 0, up)}});
   }
-  std::vector<grasp::FingerModel> fingers(2);
   std::vector<grasp::FingerInput> inputs(2);
   std::vector<Vec3> places;
   for (const int end : {0, 1}) {
     const double side = end == 0 ? -1 : 1;
-    builder.addBody({end == 0 ? "near" : "far", contact::HalfSpace{}, false, 0, {0.5, 0.5}});
-    starts.push_back({{quatFromRotationVector(Vec3(side * std::numbers::pi / 4, 0, 0)), Vec3::Zero()}});
-    grasp::FingerModel& finger = fingers[static_cast<std::size_t>(end)];
-    finger.name = end == 0 ? "left" : "right";
-    finger.radius = kRowRadius;
-    finger.coupling.stiffness.setZero();
-    finger.coupling.damping = Vec3(5, 0, 0);
-    finger.coupling.mass = 0.05;
-    finger.coupling.locked = {false, true, true};
-    places.push_back(Vec3(2 * kRowRadius * (end == 0 ? -1 : kRowBalls), 0, up));
+    builder.addBody({end == 0 ? "near" : "far", contact::HalfSpace{}, false, 0, {row.mu, row.mu}});
+    starts.push_back(
+        {{quatFromRotationVector(Vec3(side * (0.5 * std::numbers::pi - row.half_angle), 0, 0)), Vec3::Zero()}});
+    places.push_back(Vec3(2 * kRowRadius * (end == 0 ? -1 : row.balls), 0, up));
     inputs[static_cast<std::size_t>(end)].p_WF = places.back();
-    inputs[static_cast<std::size_t>(end)].f_W = Vec3(-side * press, 0, 0);
+    inputs[static_cast<std::size_t>(end)].f_W = Vec3(-side * row.press, 0, 0);
   }
-  const grasp::GraspModel model = grasp::buildGrasp(std::move(builder), fingers);
+  const grasp::GraspModel model = grasp::buildGrasp(std::move(builder), {rowFinger("left"), rowFinger("right")});
   grasp::GraspState state = grasp::makeState(model, starts, places);
   const grasp::ScratchHandle scratch = grasp::makeScratch(model);
   std::vector<engine::BodyState> pressed;  // the press, which comes all at once, has been taken up
   double furthest = 0;
-  for (int tick = 0; tick < 10000; ++tick) {
+  for (int tick = 0; tick < 1000 * row.seconds; ++tick) {
     flagged += grasp::step(model, state, *scratch, inputs).status != engine::kStepOk;
     if (tick == 1000) pressed = state.world.bodies;
-    for (std::size_t i = 0; i < kRowBalls && tick > 1000; ++i)
+    for (std::size_t i = 0; i < static_cast<std::size_t>(row.balls) && tick > 1000; ++i)
       furthest = std::max(furthest, (state.world.bodies[i].X_WI.p - pressed[i].X_WI.p).norm());
   }
   return furthest;
@@ -198,10 +212,32 @@ double pressRow(int heavy, double press, std::int64_t& flagged) {
 std::vector<Record> row(MeasureContext&) {
   double moved = 0;
   std::int64_t flagged = 0;
-  for (const int heavy : {0, kRowBalls / 2, kRowBalls - 1}) {
-    for (const double press : {5.0, 50.0}) moved = std::max(moved, pressRow(heavy, press, flagged));
+  for (const int heavy : {0, 5, 9}) {
+    for (const double press : {5.0, 50.0}) moved = std::max(moved, pressRow({.heavy = heavy, .press = press}, flagged));
   }
   return {atMost("furthest of any ball from 1 to 10 s", 1e6 * moved, "um", 1e-6),
+          exactly("flagged ticks", static_cast<double>(flagged), "-", 0)};
+}
+
+// Rows of 3 to 15 balls; of 60 contacts and more, as 20 balls have, heaps are solved to another accuracy.
+std::vector<Record> rows(MeasureContext& context) {
+  double moved = 0, runs = 0;
+  std::int64_t flagged = 0;
+  for (const int balls : context.thorough ? std::vector<int>{3, 4, 5, 7, 10, 12, 15} : std::vector<int>{3, 10, 15}) {
+    for (const double heavier : {1.0, 100.0, 1000.0}) {
+      for (const double mu : {0.1, 0.3, 0.5, 1.0}) {
+        for (const double degrees : {30.0, 45.0, 60.0}) {
+          for (int k = 0; k < (context.thorough ? 6 : 1) && !context.interrupted(); ++k, ++runs) {
+            const int heavy = (k % 3) * (balls - 1) / 2;
+            moved = std::max(moved, pressRow({balls, heavy, heavier, mu, degrees * std::numbers::pi / 180,
+                                              k < 3 ? 5.0 : 50.0, context.thorough ? 60.0 : 2.0},
+                                             flagged));
+          }
+        }
+      }
+    }
+  }
+  return {unbounded("rows", runs, "-"), atMost("furthest of any ball after 1 s", 1e6 * moved, "um", 1e-5),
           exactly("flagged ticks", static_cast<double>(flagged), "-", 0)};
 }
 
@@ -217,7 +253,8 @@ std::vector<Measurement> verifyPinches() {
           {"pinch/offset-plate", offsetPlate},
           {"pinch/sliding-spinning-plate", slidingSpinningPlate},
           {"pinch/handover", handover},
-          {"pinch/row", row}};
+          {"pinch/row", row},
+          {"pinch/rows", rows}};
 }
 
 }  // namespace pincer::tasks
