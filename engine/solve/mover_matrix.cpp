@@ -9,8 +9,6 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kFewProducts = 2000;  // some 60 us: always affordable
-
 void connectMovers(const ContactProblem& problem, BlockLu& lu) {
   lu.begin(problem.movers);
   for (int i = 0; i < problem.contactCount(); ++i) {
@@ -59,9 +57,9 @@ template <class Rows>
 
 }  // namespace
 
-MoverMatrix::MoverMatrix(const ContactProblem& problem, SolverScratch& scratch) : problem_(problem), scratch_(scratch) {
+MoverMatrix::MoverMatrix(const ContactProblem& problem, SolverScratch& scratch, int most)
+    : problem_(problem), scratch_(scratch) {
   connectMovers(problem, scratch.lu);
-  const int most = std::max(kFewProducts, kProductsPerContact * problem.contactCount());
   fits_ = scratch.lu.order(scratch.is_patient ? std::numeric_limits<int>::max() : most) && findPlaces(problem, scratch);
 }
 

@@ -3,6 +3,8 @@
 // 6 x 6 blocks, one per mover and pair of movers that share a contact: linear in the contacts, whatever the
 // number of pairs of them that see each other.
 #pragma once
+#include <algorithm>
+
 #include "pincer/engine/solve/solver_scratch.h"
 
 namespace pincer::engine {
@@ -10,11 +12,17 @@ namespace pincer::engine {
 // Products of blocks in a factorisation, per contact, beyond which sweeps over the contacts
 // are cheaper: where a hundred balls touch.
 constexpr int kProductsPerContact = 12;
+constexpr int kFewProducts = 2000;  // some 60 us: always affordable
+inline int affordableProducts(const ContactProblem& problem) {
+  return std::max(kFewProducts, kProductsPerContact * problem.contactCount());
+}
 
 class MoverMatrix {
  public:
-  // Finds the structure, in `scratch`. fits(): the factors do, in memory and in time.
-  MoverMatrix(const ContactProblem& problem, SolverScratch& scratch);
+  // Finds the structure, in `scratch`. fits(): the factors do, in memory and in `most` products of blocks.
+  MoverMatrix(const ContactProblem& problem, SolverScratch& scratch, int most);
+  MoverMatrix(const ContactProblem& problem, SolverScratch& scratch)
+      : MoverMatrix(problem, scratch, affordableProducts(problem)) {}
   bool fits() const { return fits_; }
 
   void clear();  // to I

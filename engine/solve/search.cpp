@@ -32,6 +32,7 @@ constexpr double kSliding = 0.05;                     // of the problem's speeds
 constexpr double kStillFading = 0.7;                  // of an error or a give, from one time to the next
 constexpr int kSweepsAtATime = 8;                     // at a time
 
+constexpr int kProductsPerRoundContact = 3;             // a row of balls in a groove takes one
 constexpr std::int64_t kPerContactLooked = 150;         // multiplications
 constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 ms
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
@@ -124,9 +125,13 @@ class Search {
     std::copy(scratch_.u.data(), scratch_.u.data() + rows(), scratch_.best_u.data());
   }
 
+  // Between balls sweeps are so cheap that factors pay in rows, rings and trees of them only.
+  int mostProducts() const {
+    return problem_.round.empty() ? affordableProducts(problem_) : kProductsPerRoundContact * problem_.contactCount();
+  }
   void search() {
-    if (!problem_.round.empty() || scratch_.operations_left < 0) return sweep();
-    MoverMatrix matrix(problem_, scratch_);
+    if (scratch_.operations_left < 0) return sweep();
+    MoverMatrix matrix(problem_, scratch_, mostProducts());
     if (!matrix.fits()) return sweep();
     const std::int64_t before = scratch_.operations_left;
     last_operation_ = before - mostOperations(matrix);
