@@ -72,7 +72,7 @@ class FewSearch {
     const bool is_small = problem_.contactCount() < kManyContacts;
     if (!is_small || options.effort == SolverEffort::kRounds) {
       goOnProximally(options, equations_);
-    } else if (!(most > 0) && goOnFromInside(options)) {
+    } else if (goOnFromInside(options)) {
       return SolveMethod::kInteriorPoint;
     }
     if ((isEnough(options) && !isSqueezedNow()) || giveWay(options, most)) return SolveMethod::kNewton;

@@ -14,9 +14,9 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
   if (isLimited(scratch)) scratch.operations_left -= operations;
 }
 
-// Work that solves of hits may take in a tick, per contact: some 50 sweeps. Beyond, no further hit cuts the tick, and
-// each of 12 solves ends with its share of it, some 4 sweeps: the best iterate counts, flagged.
-constexpr std::int64_t kHitOperations = 12'000;
+// Work that solves of hits may take in a tick, per contact: some 100 sweeps. Beyond, no further hit cuts the tick, and
+// each of 24 solves ends with its share of it, some 4 sweeps: the best iterate counts, flagged.
+constexpr std::int64_t kHitOperations = 24'000;
 inline bool haveHitsSpent(const WorldScratch& scratch) {
   return scratch.hit_operations > kHitOperations * static_cast<std::int64_t>(scratch.contacts.size());
 }
