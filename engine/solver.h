@@ -16,7 +16,7 @@ constexpr int kTorsionRow = 3, kRollingRow = 4;  // about n; the first of two, a
 // of one contact; rows that it doesn't have are 0
 using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign>;
 
-// What is tried for up to sixty contacts where Newton's method fails.
+// Methods that are tried for up to sixty contacts where Newton's method fails.
 enum class SolverEffort : std::uint8_t {
   kRounds,  // Newton's method with a proximal term
   kInside,  // of less than a dozen: from the interior, then by rounds

@@ -30,6 +30,7 @@ const std::map<std::string, std::string> kWritesImpulses = {
     {"Sweeps", "the sweeps themselves"},
     {"solveOwn", "one contact of a sweep"},
     {"solveOneContact", "one contact, exactly"},
+    {"followOneContact", "the same, from sweep to sweep"},
     {"limitFriction", "the law of one contact"},
     {"projectOntoCones", "the law of all of them"},
     {"softenImpulses", "contacts that squeeze without end, as if they were soft"},

@@ -23,7 +23,7 @@ contact::Shape smooth(const contact::TriangleMesh& mesh);
 struct HeldMesh {
   std::string name;
   contact::Shape shape;
-  double most_slip = 1e-6;  // between flat pads, of those that are known to creep [um]
+  bool is_held = true;  // by flat pads: false for what is known to creep
 };
 std::vector<HeldMesh> heldMeshes();
 
