@@ -47,12 +47,19 @@ std::string refusalOf(const HaplyServer& server, const HaplyHostOptions& options
   return "";
 }
 
-// Pushes with both arms as a servo does, until `condition`.
+// Pushes with both arms as a servo does, until `condition`. A wish lives for 4 ms: a thread that slept before it
+// looked would, on a busy machine, look again and again at forces that had ended.
 bool pushUntil(HaplyHost& host, const Vec3& f_D, const std::function<bool()>& condition) {
-  return comesTrue([&] {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::seconds(60);
+  while (Clock::now() < end) {
     for (std::size_t i = 0; i < host.arms(); ++i) host.arm(i).commandForce(f_D);
-    return condition();
-  });
+    for (const auto next = Clock::now() + std::chrono::milliseconds(1); Clock::now() < next;) {
+      if (condition()) return true;
+      std::this_thread::yield();
+    }
+  }
+  return false;
 }
 
 void armBoth(HaplyHost& host) {
