@@ -71,7 +71,9 @@ struct HaplyServer::Parts {
   std::function<void(HaplyService&)> live;
   std::vector<std::int64_t> zero_since;
   std::list<tcp::socket*> sockets;
-  std::vector<std::string> told;  // events, all of them
+  std::vector<std::string> told;                                                  // events, all of them
+  std::chrono::steady_clock::time_point last = std::chrono::steady_clock::now();  // of catchUp()
+  double lived = 0;                                                               // of it, not yet told to `live` [s]
   std::atomic<bool> end{false};
   std::atomic<std::int64_t> delay_ms{0};
   std::atomic<int> connections{0};
@@ -87,20 +89,23 @@ struct HaplyServer::Parts {
   }
 
   void turn() {
-    double lived = 0;
-    auto last = std::chrono::steady_clock::now();
     while (!end) {
       std::this_thread::sleep_for(kTurn);
-      const auto now = std::chrono::steady_clock::now();
-      const double dt = std::min(kLongestTurn, std::chrono::duration<double>(now - last).count());
-      last = now;
       const std::lock_guard lock(one);
-      service.advance(dt);
-      for (lived += dt; lived >= 1e-3; lived -= 1e-3) {
-        if (live) live(service);
-      }
-      watch();
+      catchUp();
     }
+  }
+  // The devices, to now; under the lock. Before each answer as well: a busy machine may leave turn() out for long,
+  // and a place that stands still although the force changed looks like a frozen encoder.
+  void catchUp() {
+    const auto now = std::chrono::steady_clock::now();
+    const double dt = std::min(kLongestTurn, std::chrono::duration<double>(now - last).count());
+    last = now;
+    service.advance(dt);
+    for (lived += dt; lived >= 1e-3; lived -= 1e-3) {
+      if (live) live(service);
+    }
+    watch();
   }
   // Under the lock, whenever a force may have changed.
   void watch() {
@@ -175,6 +180,7 @@ struct HaplyServer::Parts {
     std::vector<std::string> answers;
     {
       const std::lock_guard lock(one);
+      catchUp();
       answers = service.answer(session, {static_cast<const char*>(buffer.cdata().data()), buffer.size()});
       watch();
     }
