@@ -16,21 +16,14 @@ namespace {
 
 // The parameters of the search; docs/engine.md gives their reasons.
 constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
-constexpr double kEpsilonOfError = 1e3;               // the first is that times the start's error [s/m]
-constexpr double kEasier = 0.2, kHarder = 5;          // epsilon after a short round, after one that failed
-constexpr double kEasierInMotion = 0.4;               // and where a round that overshoots gains nothing:
-constexpr double kMotion = 1e4;                       // where something slips faster than so many times the accuracy
-constexpr double kLeft = 0.1;                         // of what is enough: a round's own error
-constexpr double kFirstDescent = 1e-2;                // epsilon of descents, at most
-constexpr double kRough = 1e-2;                       // of the start's error: a descent's own
-constexpr double kMostlyGive = 0.3;                   // of a descent's error: a smaller epsilon helps
-constexpr int kEasySteps = 3, kMostRoundSteps = 8;    // of a round
-constexpr int kDescents = 6, kMostDescentSteps = 30;  // at a time; of one
-constexpr double kFar = 1e-3;                         // from which rounds fail more often than not [m/s]
-constexpr double kShareOfSlip = 3e-4;                 // of what pushes: below it, in motion, errors don't show
-constexpr double kSliding = 0.05;                     // of the problem's speeds: what slips faster is swept
-constexpr double kStillFading = 0.7;                  // of an error or a give, from one time to the next
-constexpr int kSweepsAtATime = 8;                     // at a time
+constexpr double kEpsilonOfError = 1e3;             // the first is that times the start's error [s/m]
+constexpr double kMotion = 1e3, kSliding = 1e4;     // of the accuracy: slips of what isn't about to rest, and fast
+constexpr double kLeft = 0.1;                       // of what is enough: a round's own error
+constexpr double kFirstDescent = 1e-2;              // epsilon of descents, at most
+constexpr double kRough = 1e-2, kMostlyGive = 0.3;  // a descent's error, of its start's; a give, of its error
+constexpr int kMostRoundSteps = 8, kDescents = 6, kMostDescentSteps = 30;  // of a round; at a time; of one
+constexpr double kShareOfSlip = 3e-4;  // of what pushes: below it, in motion, errors don't show
+constexpr int kSweepsAtATime = 16;     // they cost two steps
 
 constexpr int kProductsPerRoundContact = 3;             // a row of balls in a groove takes one
 constexpr std::int64_t kPerContactLooked = 150;         // multiplications
@@ -38,11 +31,18 @@ constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
 constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
 constexpr int kHitSolves = 24;                          // that share what a tick's hits may take
-constexpr int kPolishRounds = 3;                        // of what is quiet, on to round-off
-constexpr double kPolishEpsilon = 1e-4;                 // epsilon of these rounds
-constexpr double kQuiet = 1e-3;                         // of the problem's speeds: what slips less is about to rest
+constexpr int kPolishRounds = 3;                        // of what is quiet, on to round-off, by kPolishEpsilon
+constexpr double kPolishEpsilon = 1e-4, kQuiet = 1e-3;  // quiet: slip of what is about to rest, of the problem's speeds
 
-// The fastest slip of what pushes [m/s].
+// How rounds follow each other. In motion what gains little is a loss; what is about to rest would stir on.
+struct Pace {
+  double easier, harder;  // times epsilon: after a round of a few steps, after one that failed
+  int easy_steps;
+  double still_fading, far;  // of an error or a give, from time to time; from which rounds rather fail [m/s]
+};
+constexpr Pace kAtRest{0.2, 5, 3, 0.7, 1e-3}, kInMotion{0.4, 10, 2, 0.5, 3e-4};
+
+// Of what pushes [m/s].
 double fastestSlip(const ContactProblem& problem, const double* r, const double* u) {
   double fastest2 = 0;
   for (int i = 0; i < problem.contactCount(); ++i) {
@@ -178,15 +178,15 @@ class Search {
     look();
   }
 
-  bool isFar() const { return best_.speed > kFar; }
+  bool isFar() const { return best_.speed > pace().far; }
   bool moves() const { return options_.accuracy > 0 && slip_ > kMotion * options_.accuracy; }
-  double easier() const { return moves() ? kEasierInMotion : kEasier; }
-  bool slides() const { return slip_ > kSliding * referenceSpeed(problem_); }
+  bool slides() const { return options_.accuracy > 0 && slip_ > kSliding * options_.accuracy; }
+  const Pace& pace() const { return moves() ? kInMotion : kAtRest; }
 
   // To where rounds succeed: what slides by sweeps, as long as they get on; then by descents.
   void approach(ProximalRound& round) {
     double before = std::numeric_limits<double>::infinity();
-    while (slides() && isFar() && best_.speed < kStillFading * before && !isSpent()) {
+    while (slides() && isFar() && best_.speed < pace().still_fading * before && !isSpent()) {
       before = best_.speed;
       smooth();
     }
@@ -205,8 +205,8 @@ class Search {
       const double give = noteGive(epsilon);
       recentre();
       const bool is_soft = give > kMostlyGive * error_.speed;
-      if (!is_soft && !(best_.speed < kStillFading * before)) return;
-      if (is_soft && is_done) epsilon = std::max(kLeastEpsilon, kEasier * epsilon);
+      if ((slides() || !is_soft) && !(best_.speed < pace().still_fading * before)) return;
+      if (is_soft && is_done) epsilon = std::max(kLeastEpsilon, pace().easier * epsilon);
     }
   }
 
@@ -235,7 +235,7 @@ class Search {
     while (!isEnough() && !isSpent()) {
       const int before = result_.iterations;
       if (!round.solve(Shift::kFollows, {epsilon, left(), stepsOf(kMostRoundSteps)}, result_.iterations)) {
-        epsilon = std::min(kMostEpsilon, kHarder * epsilon);
+        epsilon = std::min(kMostEpsilon, pace().harder * epsilon);
         if (++failures > kMostFailures * times()) return;
         goAround(round, std::min(epsilon, kFirstDescent), failures);
         continue;
@@ -243,7 +243,7 @@ class Search {
       const double last_give = give, last_error = error_.speed;
       give = noteGive(epsilon);
       recentre();
-      if (give < kStillFading * last_give)
+      if (give < pace().still_fading * last_give)
         patience = longest;
       else if (epsilon == kLeastEpsilon || !scratch_.is_patient)
         --patience;
@@ -254,8 +254,8 @@ class Search {
         give = std::numeric_limits<double>::infinity();
         continue;
       }
-      if (result_.iterations - before <= kEasySteps || error_.speed > kStillFading * last_error)
-        epsilon = std::max(kLeastEpsilon, easier() * epsilon);
+      if (result_.iterations - before <= pace().easy_steps || error_.speed > pace().still_fading * last_error)
+        epsilon = std::max(kLeastEpsilon, pace().easier * epsilon);
     }
   }
 
