@@ -7,6 +7,7 @@
 #include "pincer/contact/shape/core_descent.h"
 #include "pincer/contact/shape/pad_contacts.h"
 #include "pincer/contact/shape/wall_line.h"
+#include "pincer/contact/shape/wander.h"
 #include "pincer/contact/smooth_mesh.h"
 #include "pincer/contact/surface/mesh_features.h"
 #include "pincer/contact/surface/surface_net.h"
@@ -83,7 +84,9 @@ class PadQuery {
       padOnShape(pad_, X_BF_, shape_, margin_, Vec3::Zero(), cache_, patch);
       if (isFlat(patch, found.main())) return contactsOf(patch);
     }
+    const SurfaceContact main = found.main();
     addFurther(found);
+    found.wander_B = wanderAt(shape_, main, pad_.rounding, kApartOnPad * size_, triedBall(), cache_);
     return found;
   }
 

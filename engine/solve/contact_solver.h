@@ -37,7 +37,7 @@
 
 namespace pincer::engine {
 
-// A contact that moves slower than this, of more than kFewContacts, is at rest [m/s]: with
+// A contact that moves slower than this, of more than kDenseContacts, is at rest [m/s]: with
 // the default accuracy a millimetre in a day.
 inline double restErrorOf(const SolverOptions& options) { return 0.01 * options.accuracy; }
 

@@ -10,6 +10,7 @@
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/joints.h"
 #include "pincer/engine/world/rest.h"
+#include "pincer/engine/world/rocking.h"
 #include "pincer/engine/world/stages.h"
 #include "pincer/engine/world/tree_motion.h"
 
@@ -118,6 +119,7 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
     moment_W = -moment_W;
     applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, &moment_W, c);
   }
+  if (model.has_hollows) resistRocking(scratch);
   if (scratch.h > 0) spreadClosing(model, scratch);
   if (!model.joint_groups.empty()) gatherJointImpulses(model, scratch);
   if (!model.trees.empty()) gatherTrees(model, scratch);

@@ -9,6 +9,7 @@
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/push_out.h"
+#include "pincer/engine/world/rocking.h"
 #include "pincer/engine/world/stick_bias.h"
 #include "pincer/engine/world/wedge.h"
 
@@ -158,6 +159,7 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
     memories = recallContacts(memories, std::span(scratch.contacts).subspan(first, end - first), scratch);
     if (model.has_hollows) {
       steadyInHollows(model, state, scratch);
+      steadyRocking(model, state, scratch);
       loosenWedges(scratch);
     }
     for (int i = first; i < end; ++i) {

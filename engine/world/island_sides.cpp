@@ -18,8 +18,11 @@ int numberOf(const WorldModel& model, const WorldScratch& scratch, const Side& s
   PINCER_ASSERT(isIndex(mover, s.number.size()));
   if (s.number[mover] < 0) {
     s.number[mover] = island.movers++;
-    if (side.kind == SideKind::kBody && model.bodies[side.index].tree < 0)
-      s.root_inertia[mover] = rootOfInertia(model.bodies[side.index].rotation, scratch.bodies[side.index].X_WI_mid.q);
+    if (side.kind == SideKind::kBody && model.bodies[side.index].tree < 0) {
+      const BodyScratch& body = scratch.bodies[side.index];
+      s.root_inertia[mover] =
+          body.rocks ? body.rocking.root_W : rootOfInertia(model.bodies[side.index].rotation, body.X_WI_mid.q);
+    }
   }
   return s.number[mover];
 }
@@ -72,7 +75,7 @@ void fillManySides(const WorldModel& model, WorldScratch& scratch, Island& islan
       });
     }
     island.settling = std::max(island.settling, c.settling);
-    island.calm = island.calm && island.contacts > kFewContacts && isCalm(model, c);
+    island.calm = island.calm && island.contacts > kDenseContacts && isCalm(model, c);
   }
   first_side[island.contacts] = sides;
 }
@@ -104,7 +107,7 @@ void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, I
     if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
     if (s.sides_per_contact > 2) fillInboardSide(model, scratch, i, island, s, sides);
     island.settling = std::max(island.settling, c.settling);
-    island.calm = island.calm && island.contacts > kFewContacts && isCalm(model, c);
+    island.calm = island.calm && island.contacts > kDenseContacts && isCalm(model, c);
   }
 }
 

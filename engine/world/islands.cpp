@@ -216,10 +216,12 @@ bool isHeldByPads(const IslandScratch& s, const Island& island, const WorldScrat
                      [&](int i) { return scratch.contacts[i].a.kind == SideKind::kPoint; });
 }
 
+// What moves by no more than the answer's own error stands still: it would creep on by that, or shake. Equations by
+// movers, beyond kDenseContacts, leave 1e-11 m/s to round-off.
 double restSpeed(const Island& island, const WorldOptions& options) {
   const double on_links = island.holds_trees ? linkNoise(options.h) : 0;
-  const double of_many = island.contacts > kFewContacts ? 2 * restErrorOf(options.solver) : 0;
-  return std::max({kRestSpeed, on_links, of_many});
+  const double error = island.contacts > kDenseContacts ? restErrorOf(options.solver) : island.result.error;
+  return std::max({kRestSpeed, on_links, 2 * error});
 }
 
 void scatter(const IslandScratch& s, const Island& island, const WorldModel& model, WorldScratch& scratch) {

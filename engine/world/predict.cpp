@@ -33,6 +33,7 @@ void place(const BodyModel& body, BodyScratch& out) {
 void predictBody(const BodyModel& body, const BodyState& s, const Vec3& dv_gravity_W, const BodyForce* force, double h,
                  BodyScratch& out) {
   PINCER_ASSERT(isUnitIfFinite(s.X_WI.q));
+  out.rocks = false;
   out.start.v_W = s.v_W;
   out.free.v_W = s.v_W + dv_gravity_W;
   out.free_angular_impulse_W.setZero();
@@ -179,6 +180,7 @@ void predictAxes(const DrivenPointModel& point, const std::array<AxisForm, 3>& f
   out.v_target_W = out.input_ok ? in.v_target_W : Vec3::Zero();
   out.start.v_W = s.v_W;
   out.turned = in.turned && out.input_ok;
+  out.wanders_on = -1;
   const PointMotion motion_W{s.p_W - s.p_target_W,
                              s.v_W,
                              s.v_target_W,
@@ -240,6 +242,7 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     BodyScratch& out = scratch.bodies[i];
     const BodyState& s = state.bodies[i];
+    out.rocks = false;
     out.X_WI_mid = s.X_WI;
     out.start = {s.v_W, bodyAngularVelocity(model, state, static_cast<int>(i))};
     out.free = out.end = out.start;

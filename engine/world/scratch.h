@@ -32,7 +32,15 @@ struct MoverScratch {
   bool closing = false;  // and one of those closes in this tick
   bool still = false;    // of bodies: nothing of its state changed in this tick
 };
+// Of a body that rocks in this part of the tick, see rocking.h.
+struct Rocking {
+  Mat3 wander_W;  // h^2 f W, of all its contacts [kg m^2]
+  Mat3 g_W;       // [kg m^2]
+  Mat3 root_W;    // F of the inertia I + g [kg^-1/2 m^-1]
+  Vec3 w_W;       // with which the pads turn [rad/s]
+};
 struct BodyScratch : MoverScratch {
+  bool rocks = false;
   Pose X_WI_mid, X_WB_mid;
   Pose X_WB_end;                          // of driven bodies
   Mat3 R_WB_mid = Mat3::Identity();       // X_WB_mid.q: a matrix turns many vectors in half the time
@@ -42,6 +50,7 @@ struct BodyScratch : MoverScratch {
   Motion push;       // out of overlap, in this part of the tick, see push_out.h: a way [m] and a turn [rad]
   // the part of it without contact, of joints and torques applied; `free` has what it does
   Vec3 free_angular_impulse_W = Vec3::Zero();
+  Rocking rocking;  // without values unless it rocks
 };
 struct PointScratch : MoverScratch {
   Vec3 p_mid_W = Vec3::Zero();
@@ -52,6 +61,7 @@ struct PointScratch : MoverScratch {
   double mobility_h = 0;
   bool mobility_touching = false;
   bool has_hollows = false;  // the model's
+  int wanders_on = -1;       // body on which the place of its contact `wander_id` wanders as that turns, -1: none
   bool turned = false;       // A isn't W
   bool input_ok = true;
   double inverse_twist = 0;  // effective inverse inertia about A's third axis [1/(kg m^2)]
@@ -68,6 +78,8 @@ struct PointScratch : MoverScratch {
   double turn_share_of_end = 1;     // of the turning spring, likewise
   Vec3 told_w_W = Vec3::Zero();     // that of its device [rad/s]
   Vec3 turn_rate_W = Vec3::Zero();  // past that, if nothing touched [rad/s]
+  std::uint64_t wander_id = 0;
+  Mat3 wander_W = Mat3::Zero();  // W of rocking.h [m]
   double turning_stiffness = 0;     // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
 
   // Change of velocity by an impulse.

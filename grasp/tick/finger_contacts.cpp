@@ -136,6 +136,15 @@ class FingerLook {
     for (int i = 0; i < found.count; ++i) {
       if (found.points[i].phi < margin) add(found.points[i], place, two);
     }
+    if constexpr (std::is_same_v<Found, contact::FingerContacts>) noteWander(found, place, two);
+  }
+
+  // Of what is touched last, where a compound is touched by several shapes.
+  void noteWander(const contact::FingerContacts& found, const Place& place, const Touching& two) {
+    if (found.wander_B.isZero(0)) return;
+    point_.wanders_on = place.collider.body;
+    point_.wander_id = two.first_id | found.main().feature;
+    point_.wander_W = place.R_WS * found.wander_B * place.R_WS.transpose();
   }
 
   // The two touch midway between the body's surface and the fingertip's, on the
@@ -161,7 +170,7 @@ class FingerLook {
   GraspScratch& scratch_;
   const int finger_;
   const FingerModel& f_;
-  const engine::PointScratch& point_;
+  engine::PointScratch& point_;
   const bool moves_;
   NearestBody& nearest_;
 };

@@ -1,6 +1,7 @@
 #include "pincer/tasks/judge/exact/pinch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -99,27 +100,54 @@ Vec2 ShakenGrip::targetSpeed(double time) const {
 namespace {
 
 constexpr double kShakenStep = 4e-6;  // [s]
+constexpr int kCorners = 4, kShakenSweeps = 20;
 
 // Box and pads, from where they hang at rest.
 struct ShakenState {
   Vec2 p_box, p_pad, v_box = Vec2::Zero(), v_pad = Vec2::Zero();
+  double angle = 0, rate = 0;
+  std::array<Vec2, kCorners> arm, impulse;  // rho_i; F_i times the step
 
-  explicit ShakenState(const ShakenGrip& grip) : p_box(0, -0.5 * grip.mass * grip.g / grip.stiffness), p_pad(p_box) {}
+  explicit ShakenState(const ShakenGrip& grip) : p_box(0, -0.5 * grip.mass * grip.g / grip.stiffness), p_pad(p_box) {
+    impulse.fill(Vec2::Zero());
+  }
 
-  // One step with friction of at most `most` [N]; returns the friction that would end the slip in it.
-  double step(const ShakenGrip& grip, double time, double most) {
+  // One step with friction of at most `most` in all [N].
+  void step(const ShakenGrip& grip, double time, double most) {
     const Vec2 spring =
         2 * grip.stiffness * (grip.target(time) - p_pad) + 2 * grip.damping * (grip.targetSpeed(time) - v_pad);
     v_box += kShakenStep * Vec2(0, -grip.g);
     v_pad += kShakenStep / (2 * grip.pad_mass) * spring;
-    const Vec2 ends = (v_pad - v_box) / (1 / grip.mass + 0.5 / grip.pad_mass);
-    const double needed = ends.norm() / kShakenStep;
-    const Vec2 impulse = needed > most ? Vec2(ends * (most / needed)) : ends;
-    v_box += impulse / grip.mass;
-    v_pad -= impulse / (2 * grip.pad_mass);
+    rub(grip, most * kShakenStep / kCorners);
     p_box += kShakenStep * v_box;
     p_pad += kShakenStep * v_pad;
-    return needed;
+    angle += kShakenStep * rate;
+  }
+  // In the last step [N].
+  double friction() const { return (impulse[0] + impulse[1] + impulse[2] + impulse[3]).norm() / kShakenStep; }
+
+ private:
+  void push(const ShakenGrip& grip, const Vec2& at, const Vec2& by) {
+    v_box += by / grip.mass;
+    v_pad -= by / (2 * grip.pad_mass);
+    rate += (at.x() * by.y() - at.y() * by.x()) / grip.inertia;
+  }
+  void rub(const ShakenGrip& grip, double most) {
+    for (std::size_t i = 0; i < kCorners; ++i) {
+      arm[i] = p_pad - p_box + grip.corner * Vec2(i & 1 ? 1 : -1, i & 2 ? 1 : -1);
+      push(grip, arm[i], impulse[i]);
+    }
+    for (int sweep = 0; sweep < kShakenSweeps; ++sweep) {
+      for (std::size_t i = 0; i < kCorners; ++i) relax(grip, i, most);
+    }
+  }
+  void relax(const ShakenGrip& grip, std::size_t i, double most) {
+    const double mobility = 1 / grip.mass + 0.5 / grip.pad_mass + arm[i].squaredNorm() / grip.inertia;
+    const Vec2 slip = v_box + rate * Vec2(-arm[i].y(), arm[i].x()) - v_pad;
+    Vec2 next = impulse[i] - slip / mobility;
+    if (next.norm() > most) next *= most / next.norm();
+    push(grip, arm[i], next - impulse[i]);
+    impulse[i] = next;
   }
 };
 
@@ -128,18 +156,20 @@ struct ShakenState {
 double ShakenGrip::leastFriction(double seconds) const {
   ShakenState state(*this);
   double most = 0;
-  for (int i = 0; i < seconds / kShakenStep; ++i)
-    most = std::max(most, state.step(*this, (i + 0.5) * kShakenStep, std::numeric_limits<double>::infinity()));
+  for (int i = 0; i < seconds / kShakenStep; ++i) {
+    state.step(*this, (i + 0.5) * kShakenStep, std::numeric_limits<double>::infinity());
+    most = std::max(most, state.friction());
+  }
   return most / (2 * press);
 }
 
-std::vector<Vec2> ShakenGrip::slips(int ticks, double h) const {
+std::vector<ShakenGrip::Slip> ShakenGrip::slips(int ticks, double h) const {
   ShakenState state(*this);
-  std::vector<Vec2> slips;
+  std::vector<Slip> slips;
   const int steps = static_cast<int>(h / kShakenStep + 0.5);
   for (int i = 0; i < ticks * steps; ++i) {
     state.step(*this, (i + 0.5) * kShakenStep, 2 * mu * press);
-    if ((i + 1) % steps == 0) slips.push_back(state.p_box - state.p_pad);
+    if ((i + 1) % steps == 0) slips.push_back({state.p_box - state.p_pad, state.angle});
   }
   return slips;
 }

@@ -59,19 +59,28 @@ PlateRest slidingSpinningPlate(double mass, double inertia, double torsion_radiu
                                const Vec2& v0, double w0);
 
 // --- Box between two pads on springs whose targets shake
-// Point model: box p_b (m), both pads p_p (2 m_p) behind 2 k and 2 c towards the target
-//   t(time) = swing min(time/1 s, 1) sin(2 pi hertz time) along,   friction F on the box, |F| <= 2 mu N:
-//   m p_b'' = m g + F,   2 m_p p_p'' = 2 k (t - p_p) + 2 c (t' - p_p') - F,   sticks as long as it can
-// Integrated at 4 us, velocity first; friction as the impulse that ends the slip within the step, or its limit.
+// In the pads' plane: box p_b (m), turned by theta (inertia J about the pads' axis), both pads p_p (2 m_p) behind 2 k
+// and 2 c towards the target
+//   t(time) = swing min(time/1 s, 1) sin(2 pi hertz time) along
+//   m p_b'' = m g + sum F_i,   J theta'' = sum rho_i x F_i,   2 m_p p_p'' = 2 k (t - p_p) + 2 c (t' - p_p') - sum F_i
+//   |F_i| <= mu N / 2 on the box at the pads' corners,  rho_i = p_p + (+-a, +-a) - p_b,  sticks as long as it can
+// A box that has slipped down hangs beside its pads' middle, and turns where they shake it across: by .24 mrad over
+// .44 mm, which is 2.4 % of the slip of a point. Both pads' corners share N evenly, as the box has no moment across.
+// Integrated at 4 us, velocity first; friction as the impulses that end the slip within the step, or their limits, by
+// sweeps over the corners.
 struct ShakenGrip {
-  double mass, pad_mass, stiffness, damping, press, mu, swing, hertz;
+  double mass, inertia, pad_mass, corner, stiffness, damping, press, mu, swing, hertz;
   Vec2 along;  // across and up, in the pads' plane
   double g;
 
+  struct Slip {
+    Vec2 way;      // of the box past its pads [m]
+    double angle;  // theta [rad]
+  };
   Vec2 target(double time) const;
   Vec2 targetSpeed(double time) const;
   double leastFriction(double seconds) const;          // with which the box sticks all the time
-  std::vector<Vec2> slips(int ticks, double h) const;  // of the box past its pads after each tick [m]
+  std::vector<Slip> slips(int ticks, double h) const;  // after each tick
 };
 
 }  // namespace pincer::exact

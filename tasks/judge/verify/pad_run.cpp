@@ -59,7 +59,7 @@ std::vector<HeldMesh> heldMeshes() {
                                    64);
   return {{"torus", smooth(torus(0.013, 0.007, 48, 32))},
           {"spool", smooth(spool)},
-          {"round-edged cube", smooth(roundedCube(0.02, 0.006, 4)), false},
+          {"round-edged cube", smooth(roundedCube(0.02, 0.006, 4))},
           {"grooved block", smooth(grooveBlock(0.25 * M_PI, 0.01, 0.02, 0.015))},
           {"hilly ball", smooth(bumpySphere(0.02, 0.08, 6, 12))},
           {"scan", smooth(noisy(ellipsoid(Vec3(0.02, 0.019, 0.016), 12), 3e-5, 1))}};

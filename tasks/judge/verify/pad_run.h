@@ -23,7 +23,6 @@ contact::Shape smooth(const contact::TriangleMesh& mesh);
 struct HeldMesh {
   std::string name;
   contact::Shape shape;
-  bool is_held = true;  // by flat pads: false for what is known to creep
 };
 std::vector<HeldMesh> heldMeshes();
 
