@@ -216,12 +216,12 @@ bool isHeldByPads(const IslandScratch& s, const Island& island, const WorldScrat
                      [&](int i) { return scratch.contacts[i].a.kind == SideKind::kPoint; });
 }
 
-// What moves by no more than the answer's own error stands still: it would creep on by that, or shake. Equations by
-// movers, beyond kDenseContacts, leave 1e-11 m/s to round-off.
+// Beyond kDenseContacts equations are by movers, which leave 1e-11 m/s to round-off: rows of 15 balls would shake by
+// that for ever.
 double restSpeed(const Island& island, const WorldOptions& options) {
   const double on_links = island.holds_trees ? linkNoise(options.h) : 0;
-  const double error = island.contacts > kDenseContacts ? restErrorOf(options.solver) : island.result.error;
-  return std::max({kRestSpeed, on_links, 2 * error});
+  const double of_many = island.contacts > kDenseContacts ? 2 * restErrorOf(options.solver) : 0;
+  return std::max({kRestSpeed, on_links, of_many});
 }
 
 void scatter(const IslandScratch& s, const Island& island, const WorldModel& model, WorldScratch& scratch) {
