@@ -86,8 +86,21 @@ class PadQuery {
     }
     const SurfaceContact main = found.main();
     addFurther(found);
-    found.wander_B = wanderAt(shape_, main, pad_.rounding, kApartOnPad * size_, triedBall(), cache_);
+    if (isInsideFacet(main))
+      found.wander_B = wanderAt(shape_, main, pad_.rounding, kApartOnPad * size_, triedBall(), cache_);
     return found;
+  }
+
+  // From an edge or a corner of the pad the place doesn't wander.
+  bool isInsideFacet(const SurfaceContact& main) const {
+    Facet facet;
+    facetOf(Convex{pad_.hull}, X_BF_.q.conjugate() * -main.n_B, facet);
+    const Vec3 n_B = -(X_BF_.q * facet.n);
+    for (int k = 0; k < facet.count; ++k) {
+      const Vec3 from = cornerOf(facet, k), inwards = n_B.cross(from - cornerOf(facet, k + 1)).normalized();
+      if (!(inwards.dot(main.p_BS - from) > kApartOnPad * size_)) return false;
+    }
+    return facet.count > 2;
   }
 
   // The two ends of the line that a straight wall shares with the facet over it: of the wall, where it ends under the

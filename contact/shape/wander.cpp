@@ -12,8 +12,11 @@ using Mat2 = Eigen::Matrix2d;
 
 constexpr double kFurthest = 100;  // 1 / kappa: beyond, a place is flat; tilts then fade within seconds, chosen [m]
 
-// 1 / kappa of the eigenvalue a.
-double radiusOf(double a, double h) { return a * kFurthest > 1 ? std::max(1 / a - h, 0.0) : kFurthest; }
+// 1 / kappa of the eigenvalue a; none where the surface is hollow: a flat pad doesn't stay there.
+double radiusOf(double a, double h) {
+  if (a * kFurthest < -1) return 0;
+  return a * kFurthest > 1 ? std::max(1 / a - h, 0.0) : kFurthest;
+}
 
 }  // namespace
 

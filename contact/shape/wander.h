@@ -7,8 +7,8 @@
 //   W     the body, turned by theta past the pad, is touched at  s + (W theta) x n  [m]: under the load f that is the
 //         torque -f W theta
 //
-// From two queries beside the place. On an edge kappa is endless, and W = 0 across it; what is flat or
-// hollow there counts as nearly flat.
+// From two queries beside the place. On an edge kappa is endless, and W = 0 across it, as where the surface is hollow;
+// what is flat counts as nearly flat.
 #pragma once
 #include "pincer/contact/shape.h"
 #include "pincer/contact/surface_contact.h"
