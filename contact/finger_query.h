@@ -43,7 +43,7 @@ struct FingerContacts {
   std::array<SurfaceContact, kMaxFingerContacts> points;
   std::array<Vec3, kMaxFingerContacts> p_BT;  // the finger's own point there: p_BT = p_BS + phi n_B [m]
   int count = 0;
-  int queries = 0;  // of balls that it took
+  int queries = 0;               // of balls that it took
   Mat3 wander_B = Mat3::Zero();  // W of the main contact's place (shape/wander.h) [m]; zero where nobody asks
   const SurfaceContact& main() const { return points[0]; }
 };

@@ -80,8 +80,8 @@ void fillSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, 
   const BodyModel& body = model.bodies[side.index];
   const Vec3& arm_W = is_a ? c.arm_a_W : c.arm_b_W;
   if (body.joint_group < 0) {
-    const bool is_sphere =
-        body.rotation.kind == FreeRotation::Kind::kSpherical && !scratch.bodies[static_cast<std::size_t>(side.index)].rocks;
+    const bool is_sphere = body.rotation.kind == FreeRotation::Kind::kSpherical &&
+                           !scratch.bodies[static_cast<std::size_t>(side.index)].rocks;
     return fillBodySide(c, rows, sign, arm_W, body.root_inverse_mass, root_inertia[mover], is_sphere, out);
   }
   for (int k = 0; k < rows; ++k) std::fill(out.A[k], out.A[k] + kMoverFreedoms, 0.0);

@@ -9,7 +9,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kSlow = 1;     // trace of T, up to which a tick follows: a sixth of a swing
+constexpr double kSlow = 1;      // trace of T, up to which a tick follows: a sixth of a swing
 constexpr double kShare = 0.75;  // Gamma over T where T is large: the eigenvalues are 0 and -1/3 then
 
 bool isFree(const BodyModel& body) { return body.dynamic && !isJoined(body); }

@@ -80,7 +80,7 @@ struct PointScratch : MoverScratch {
   Vec3 turn_rate_W = Vec3::Zero();  // past that, if nothing touched [rad/s]
   std::uint64_t wander_id = 0;
   Mat3 wander_W = Mat3::Zero();  // W of rocking.h [m]
-  double turning_stiffness = 0;     // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
+  double turning_stiffness = 0;  // f kappa of its contacts in hollows, see hollow_inertia.h [N/m]
 
   // Change of velocity by an impulse.
   Vec3 response(const Vec3& impulse) const {

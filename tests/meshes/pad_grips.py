@@ -7,8 +7,8 @@
 MESHES  a directory of fandisk, rocker-arm, spot, stanford-bunny, suzanne and teapot (.obj), which pickup_parts.py
 brings to 50 mm. Each is gripped between square pads of 10, 20 and 40 mm in N headings (default 12), nudged as it is
 gripped; then it is shaken by 5 mm, or turned by a quarter about x, y or z, or neither, and rests for three seconds.
-Pads press with some 15 N each, friction .8. A grip that falls, or goes by more than a millimetre while it should rest, is
-`lost`: two places hold it that face each other too little. `creeps`: by more than 1e-6 um in its last second.
+Pads press with some 15 N each, friction .8. A grip that falls, or goes by more than a millimetre while it should
+rest, is `lost`: two places hold it that face each other too little. `creeps`: by more than 1e-6 um in its last second.
 """
 import argparse
 import csv
@@ -68,10 +68,10 @@ def keyframes(deed, place):
 
 
 def finger(name, deed, place, half, soft):
-    corners = [[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-    size = (HALF_THICK - ROUNDING, half - ROUNDING, half - ROUNDING)
+    x, y = HALF_THICK - ROUNDING, half - ROUNDING
+    corners = [[i * x, j * y, k * y] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]
     return {"name": name, "stiffness": STIFFNESS, "damping": 5, **({"patch_radius": 0.004} if soft else {}),
-            "shape": {"type": "pad", "rounding": ROUNDING, "points": [[s * c for s, c in zip(size, p)] for p in corners]},
+            "shape": {"type": "pad", "rounding": ROUNDING, "points": corners},
             "trajectory": {"keyframes": keyframes(deed, place)}}
 
 
@@ -83,9 +83,9 @@ def scene(part, units, rows, middle, turn, half, deed, soft):
     fingers = [finger("left", deed, [min(under) - HALF_THICK + PRESS / STIFFNESS, 0, 0], half, soft),
                finger("right", deed, [max(under) + HALF_THICK - PRESS / STIFFNESS, 0, 0], half, soft)]
     start = rotate(turn, [-m for m in middle])
-    body = {"name": "part", "shape": {"type": "mesh", "file": part.name, "units": units}, "mass": 0.1, "rotation": list(turn),
-            "position": [start[0], start[1], start[2] + HEIGHT], "angular_velocity": [0.2, -0.1, 0.2],
-            "material": {"mu_s": 0.8}}
+    body = {"name": "part", "shape": {"type": "mesh", "file": part.name, "units": units}, "mass": 0.1,
+            "rotation": list(turn), "position": [start[0], start[1], start[2] + HEIGHT],
+            "angular_velocity": [0.2, -0.1, 0.2], "material": {"mu_s": 0.8}}
     end = fingers[0]["trajectory"]["keyframes"][-1]["time"]
     return {"version": 1, "duration": end + REST, "bodies": [body], "fingers": fingers,
             "record": {"interval": 0.1, "quantities": ["part.p_x", "part.p_y", "part.p_z"]}}
@@ -95,7 +95,8 @@ def grip(pincer, out, content):
     """How far it goes in the last second [m], ticks flagged, and whether it is lost."""
     path, table = out / "grip.json", out / "grip.csv"
     path.write_text(json.dumps(content))
-    done = subprocess.run([str(pincer), "sim", str(path), "--json", "--out", str(table)], capture_output=True, text=True)
+    words = [str(pincer), "sim", str(path), "--json", "--out", str(table)]
+    done = subprocess.run(words, capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(done.stdout + done.stderr)
     flagged = sum(json.loads(done.stdout)["status"].values())

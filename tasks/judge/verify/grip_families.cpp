@@ -231,8 +231,8 @@ std::vector<Record> slipsShaken(double heading, MeasureContext&) {
   grip.mass = 0.15;
   const double inertia = grip.mass / 3 * (half.y() * half.y() + half.z() * half.z());
   const Vec2 along(math::cos(heading), math::sin(heading));
-  exact::ShakenGrip shaken{grip.mass, inertia, 0.05, 0.5 * grip.width - kRounding, 2000, 5, 10, 0, 0.02, 5, along,
-                           kVerifyG};
+  exact::ShakenGrip shaken{grip.mass, inertia, 0.05,    0.5 * grip.width - kRounding, 2000, 5, 10, 0, 0.02,
+                           5,         along,   kVerifyG};
   shaken.mu = 0.98 * shaken.leastFriction(3);
   const std::vector<exact::ShakenGrip::Slip> exact = shaken.slips(3000, 1e-3);
   grip.mu = shaken.mu;

@@ -219,12 +219,13 @@ std::vector<Record> row(MeasureContext&) {
           exactly("flagged ticks", static_cast<double>(flagged), "-", 0)};
 }
 
-// Rows of 3 to 30 balls; of 60 contacts and more, as 20 balls have, rows are solved by another method. Of 40, the last a
-// thousand times as heavy, pressed by 50 N with mu 1, one arches off the groove and spins between its neighbours.
+// Rows of 3 to 30 balls; of 60 contacts and more, as 20 balls have, rows are solved by another method. Of 40, the last
+// a thousand times as heavy, pressed by 50 N with mu 1, one spins between its neighbours: the row arches.
 std::vector<Record> rows(MeasureContext& context) {
   double moved = 0, runs = 0;
   std::int64_t flagged = 0;
-  for (const int balls : context.thorough ? std::vector<int>{3, 4, 5, 7, 10, 12, 15, 20, 30} : std::vector<int>{3, 10, 15}) {
+  for (const int balls :
+       context.thorough ? std::vector<int>{3, 4, 5, 7, 10, 12, 15, 20, 30} : std::vector<int>{3, 10, 15}) {
     for (const double heavier : {1.0, 100.0, 1000.0}) {
       for (const double mu : {0.1, 0.3, 0.5, 1.0}) {
         for (const double degrees : {30.0, 45.0, 60.0}) {

@@ -232,8 +232,8 @@ Creep creepBetweenPads(const std::vector<Vec2>& profile, int sides, double touch
                           patch_radius, w_W);
 }
 
-// Its faces bulge by microns, so that the place of the load went 3 mm to and fro between two ticks: it rocked at 1 rad/s
-// for ever, and crept by 12 um in a second.
+// Its faces bulge by microns, so that the place of the load went 3 mm to and fro between two ticks: it rocked at
+// 1 rad/s for ever, and crept by 12 um in a second.
 TEST(PadOnMesh, DoesntRockACubeWithRoundEdges) {
   for (const double half : {0.0095, 0.0145}) {
     const Creep creep = creepBetweenPads(contact::roundedCube(0.02, 0.006, 4), {Quat::Identity(), Vec3(0, 0, 0.1)},
