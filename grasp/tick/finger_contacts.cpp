@@ -139,7 +139,7 @@ class FingerLook {
     if constexpr (std::is_same_v<Found, contact::FingerContacts>) noteWander(found, place, two);
   }
 
-  // Of what is touched last, where a compound is touched by several shapes.
+  // Keeps that of the last shape, where a compound is touched by several.
   void noteWander(const contact::FingerContacts& found, const Place& place, const Touching& two) {
     if (found.wander_B.isZero(0)) return;
     point_.wanders_on = place.collider.body;
