@@ -1,6 +1,7 @@
 #include "pincer/engine/solve/interior_point.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "pincer/engine/solve/lorentz.h"
 
@@ -9,7 +10,11 @@ namespace {
 
 // S holds 1 / mu: frictionless contacts get this here, Newton's method corrects them
 constexpr double kSmallestFriction = 1e-4;
-constexpr double kStepFraction = 0.99;  // of the way to the boundary
+// Of the way to the boundary: as far as the step straight to complementarity came, within these. Where always 0.99 of
+// it is gone, one path in twelve ends at the boundary (1,848 problems of ticks that take long, parts in the dish).
+constexpr double kLeastFraction = 0.8, kMostFraction = 0.99;
+constexpr double kNearer = 0.5;  // the gap after kStallSteps, or the path ends nowhere
+constexpr int kStallSteps = 5;
 constexpr double kSmallestStep = 1e-9;
 constexpr double kRegularisation = 1e-13;  // of the unit diagonal of W^
 constexpr double kSmoothing = 1e-15;       // of |u_T|, relative to the start's z
@@ -39,6 +44,16 @@ class CentralPath {
     return defect <= fraction * size_ && meanGap(0) <= fraction * size_ * size_;
   }
 
+  // False where the path has come to its end: rounds (newton.h) finish what it began.
+  bool comesNearer() {
+    const double gap = meanGap(0);
+    if (gap < kNearer * least_gap_) {
+      least_gap_ = gap;
+      patience_ = kStallSteps;
+    }
+    return patience_-- > 0;
+  }
+
   // One predictor-corrector step; false when it can't go on.
   bool step() {
     const double gap = meanGap(0);
@@ -48,7 +63,7 @@ class CentralPath {
     const double predicted = std::min(1.0, direct());
     const double centring = std::clamp(math::cube(std::max(meanGap(predicted), 0.0) / gap), 1e-6, 1.0);
     aimAtCentre((predicted < 0.1 ? std::max(centring, 0.3) : centring) * gap, predicted < 0.1 ? 0 : 1);
-    const double length = std::min(1.0, kStepFraction * direct());
+    const double length = std::min(1.0, std::clamp(predicted, kLeastFraction, kMostFraction) * direct());
     if (!(length > kSmallestStep)) return false;
     for (int row = 0; row < problem_.rowCount(); ++row) {
       x_[row] += length * dx_[row];
@@ -173,6 +188,8 @@ class CentralPath {
   Iterate& it_;
   double *x_, *z_, *dx_, *dz_, *lambda_, *target_, *defect_, *t_;
   double size_ = 0;  // of the problem's velocities [sqrt(J)]
+  double least_gap_ = std::numeric_limits<double>::infinity();
+  int patience_ = kStallSteps;  // steps left to come nearer
 };
 
 }  // namespace
@@ -181,7 +198,7 @@ int followCentralPath(const ScaledProblem& problem, const double* shift, double 
                       ContactEquations& equations, SolverScratch& scratch, Iterate& it) {
   CentralPath path(problem, shift, equations, scratch, it);
   for (int n = 0; n < iterations; ++n)
-    if (it.residual <= tolerance || path.isSolved(tolerance) || !path.step()) return n;
+    if (it.residual <= tolerance || path.isSolved(tolerance) || !path.comesNearer() || !path.step()) return n;
   return iterations;
 }
 
