@@ -30,12 +30,14 @@ using VectorMap = Eigen::Map<Eigen::VectorXd>;
 
 constexpr int kMoverFreedoms = 6;  // of a rigid body; runs of joints are cut to it
 
-// Calls act with the number of rows, as a constant where it is three: nearly all contacts have
-// three, and the compiler knows what to do then.
+// Calls act with the number of rows, as a constant where it is three or, with torsion, four: nearly all contacts have
+// so many, and the compiler knows what to do then.
 template <class Act>
 [[gnu::always_inline]] inline void withRows(int rows, const Act& act) {
   if (rows == kTorsionRow) {
     act(std::integral_constant<int, kTorsionRow>());
+  } else if (rows == kRollingRow) {
+    act(std::integral_constant<int, kRollingRow>());
   } else {
     act(rows);
   }

@@ -18,14 +18,22 @@ int pivotRow(const double* column, int k, int n) {
   return best;
 }
 
-void swapRows(double* A, int n, int i, int k) {
-  if (i == k) return;
-  for (int j = 0; j < n; ++j) std::swap(A[i + j * n], A[k + j * n]);
-}
-
 // y -= a x over rows [from, to)
 void subtractScaled(double* y, double a, const double* x, int from, int to) {
   for (int i = from; i < to; ++i) y[i] -= a * x[i];
+}
+
+// y -= L's columns [from, from + count) times y's own numbers there, over the rows below: number by number in the order
+// of the columns.
+constexpr int kColumnsAtOnce = 4;  // at once: each number of y is read and written once for so many
+void subtractColumns(double* y, const double* L, int n, int from) {
+  const double *const a = L + from * n, *const b = a + n, *const c = b + n, *const d = c + n;
+  double* const u = y + from;
+  u[1] -= u[0] * a[from + 1];
+  u[2] = (u[2] - u[0] * a[from + 2]) - u[1] * b[from + 2];
+  u[3] = ((u[3] - u[0] * a[from + 3]) - u[1] * b[from + 3]) - u[2] * c[from + 3];
+  const double u0 = u[0], u1 = u[1], u2 = u[2], u3 = u[3];
+  for (int i = from + kColumnsAtOnce; i < n; ++i) y[i] = (((y[i] - u0 * a[i]) - u1 * b[i]) - u2 * c[i]) - u3 * d[i];
 }
 
 // In line for the six freedoms of a body, the size that nearly all have.
@@ -55,16 +63,20 @@ template <class Size>
 
 }  // namespace
 
+// Column after column, each by all before it at once.
 bool factoriseLu(double* A, int n, int* pivots) {
-  for (int k = 0; k < n; ++k) {
-    double* const column = A + k * n;
-    pivots[k] = pivotRow(column, k, n);
-    swapRows(A, n, pivots[k], k);
-    const double pivot = column[k];
+  for (int j = 0; j < n; ++j) {
+    double* const column = A + j * n;
+    for (int k = 0; k < j; ++k) std::swap(column[k], column[pivots[k]]);
+    int k = 0;
+    for (; k + kColumnsAtOnce <= j; k += kColumnsAtOnce) subtractColumns(column, A, n, k);
+    for (; k < j; ++k) subtractScaled(column, column[k], A + k * n, k + 1, n);
+    pivots[j] = pivotRow(column, j, n);
+    for (int i = 0; i <= j && pivots[j] != j; ++i) std::swap(A[j + i * n], A[pivots[j] + i * n]);
+    const double pivot = column[j];
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) return false;
     const double inverse = 1 / pivot;
-    for (int i = k + 1; i < n; ++i) column[i] *= inverse;
-    for (int j = k + 1; j < n; ++j) subtractScaled(A + j * n, A[k + j * n], column, k + 1, n);
+    for (int i = j + 1; i < n; ++i) column[i] *= inverse;
   }
   return true;
 }

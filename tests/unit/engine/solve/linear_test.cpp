@@ -36,6 +36,32 @@ RC_GTEST_PROP(Linear, LuSolvesAnyRegularSystem, (unsigned seed)) {
   RC_ASSERT((A * x - b).norm() <= 1e-13 * (A.norm() * x.norm() + b.norm()));
 }
 
+// As in the textbook, which updates all that is left by one column at a time.
+Eigen::MatrixXd eliminated(Eigen::MatrixXd A) {
+  const int n = static_cast<int>(A.rows());
+  for (int k = 0; k < n; ++k) {
+    int pivot = 0;
+    A.col(k).tail(n - k).cwiseAbs().maxCoeff(&pivot);
+    A.row(k).swap(A.row(k + pivot));
+    A.col(k).tail(n - k - 1) *= 1 / A(k, k);
+    for (int j = k + 1; j < n; ++j) {
+      for (int i = k + 1; i < n; ++i) A(i, j) -= A(k, j) * A(i, k);
+    }
+  }
+  return A;
+}
+
+// Columns are taken four at a time, numbers in the order of the textbook: sums have the same bits.
+RC_GTEST_PROP(Linear, LuHasTheBitsOfElimination, (unsigned seed)) {
+  tests::RandomScenes random(seed);
+  const int n = random.integer(1, 40);
+  Eigen::MatrixXd LU = randomMatrix(random, n);
+  const Eigen::MatrixXd expected = eliminated(LU);
+  std::vector<int> pivots(static_cast<std::size_t>(n));
+  RC_ASSERT(factoriseLu(LU.data(), n, pivots.data()));
+  RC_ASSERT(LU == expected);
+}
+
 RC_GTEST_PROP(Linear, LdltSolvesPositiveDefiniteSystemsFromTheLowerTriangle, (unsigned seed)) {
   tests::RandomScenes random(seed);
   const int n = random.integer(1, 40);
