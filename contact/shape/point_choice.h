@@ -77,8 +77,18 @@ class PointChoice {
     return std::any_of(chosen_.begin(), chosen_.begin() + count_, is);
   }
 
+  // True of all points within the margin, and of few others.
+  auto sieve() const {
+    if constexpr (requires { support_.sieve(margin_); })
+      return support_.sieve(margin_ + solid_.rounding);
+    else
+      return [](const Vec3&) { return true; };
+  }
+
   void listNear() {
+    const auto may_be_near = sieve();
     for (int i = 0; i < candidates(); ++i) {
+      if (!may_be_near(solid_.points[i])) continue;
       const double gap = gapOf(i);
       if (!(gap < margin_)) continue;
       if (near_count_ < kListed) near_[near_count_] = {{i, gap}, kUnknown};
@@ -126,8 +136,9 @@ class PointChoice {
     Chosen next{-1, 0};
     const Vec3 last = chosenPoint(count_ - 1);
     forEachNear([&](Near& c) {
-      const Vec3& p = solid_.points[c.index];
       const double higher = kSameGap + c.gap - deepest_;
+      if (!(c.reach2 > kBetter * best * higher)) return;
+      const Vec3& p = solid_.points[c.index];
       c.reach2 = std::min(c.reach2, reachFrom((p - last).squaredNorm()));
       if (!(c.reach2 > kBetter * best * higher)) return;
       const double d = outside(p);

@@ -5,6 +5,7 @@
 //
 // Both gaps are concave and fall by at most 1 m per m: a convex solid is nearest to either at one of its extreme points
 // (vertices, rims, ends), and no nearer than gap(origin) - bounding radius.
+//   sieve(g)    bowl: false only of points whose gap isn't below g, so that a scan over many needs no roots
 //   steepest()  the direction in A's xy-plane in which the gap falls fastest, times that rate (at the
 //               solid's axis; bowl: seen from m) [-]; of a circle about A's z axis the point in that
 //               direction is the deepest, exactly, for both
@@ -47,6 +48,11 @@ class BowlSupport {
   BowlSupport(const Dish& dish, const Pose& X_WB, const SolidFrame& A)
       : m_A_(A.fromWorld(X_WB * Vec3(0, 0, dish.radius) - A.p_WA)), radius_(dish.radius) {}
   double gap(const Vec3& p_A) const { return radius_ - (p_A - m_A_).norm(); }
+  auto sieve(double gap) const {
+    constexpr double kRounded = 1 - 1e-12;  // more than round-off changes
+    const double reach = kRounded * (radius_ - gap), reach2 = reach > 0 ? reach * reach : -1;
+    return [reach2, m_A = m_A_](const Vec3& p_A) { return (p_A - m_A).squaredNorm() > reach2; };
+  }
   Vec3 normal(const Vec3& p_A) const { return directionOf<Vec3>(m_A_ - p_A, Vec3::UnitZ()).n; }
   Vec3 normalInWorld(const Vec3& p_A, const SolidFrame& A) const { return A.toWorld(normal(p_A)); }
   Vec2 steepest() const { return -m_A_.head<2>() / radius_; }
