@@ -21,18 +21,26 @@ constexpr double kDirection = 1e-5;  // [rad]
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 Vec3 unit(const Vec3& v) { return v / v.norm(); }
 int factorial(int n) { return n < 2 ? 1 : n * factorial(n - 1); }
-double power(double x, int n) { return n <= 0 ? 1 : x * power(x, n - 1); }
+
+// x^-1 counts as 1: it stands only beside a factor 0.
+class Powers {
+ public:
+  explicit Powers(double x) : powers_{1, 1, x, x * x, x * x * x} {}
+  double operator[](int n) const { return powers_[at(n + 1)]; }
+
+ private:
+  std::array<double, 5> powers_;
+};
 
 // w^i u^j v^k and its derivatives along u and v, where w = 1 - u - v.
 struct Monomial {
   double value, du, dv;
 };
-Monomial monomial(const std::array<int, 3>& e, double u, double v) {
-  const double w = 1 - u - v;
-  const double dw = e[0] * power(w, e[0] - 1) * power(u, e[1]) * power(v, e[2]);
-  const double du = e[1] * power(w, e[0]) * power(u, e[1] - 1) * power(v, e[2]);
-  const double dv = e[2] * power(w, e[0]) * power(u, e[1]) * power(v, e[2] - 1);
-  return {power(w, e[0]) * power(u, e[1]) * power(v, e[2]), du - dw, dv - dw};
+Monomial monomial(const std::array<int, 3>& e, const Powers& w, const Powers& u, const Powers& v) {
+  const double dw = e[0] * w[e[0] - 1] * u[e[1]] * v[e[2]];
+  const double du = e[1] * w[e[0]] * u[e[1] - 1] * v[e[2]];
+  const double dv = e[2] * w[e[0]] * u[e[1]] * v[e[2] - 1];
+  return {w[e[0]] * u[e[1]] * v[e[2]], du - dw, dv - dw};
 }
 
 // contact.md: Walton and Meek; bent by 4 w / (1 + w)^2 of it where N0 outweighs N1 by w.
@@ -113,6 +121,7 @@ ShellOracle::ShellOracle(const TriangleMesh& mesh, double crease_angle, bool use
   }
   size_ = (high - low).maxCoeff();
   buildFaces(mesh);
+  findSharpEnds();
 }
 
 void ShellOracle::buildFaces(const TriangleMesh& mesh) {
@@ -153,7 +162,8 @@ void ShellOracle::buildFaces(const TriangleMesh& mesh) {
         edges_.push_back({{p[i], handles[i][0], handles[i][1], p[k]},
                           {n[i], middles[i], n[k]},
                           {beyond[0], their_middle, beyond[1]},
-                          other.triangle < 0});
+                          other.triangle < 0,
+                          {mesh.triangles[t][i], mesh.triangles[t][k]}});
       }
     }
     // The middle of the patch is the mean of three smooth curves, each from a corner
@@ -185,20 +195,40 @@ void ShellOracle::buildFaces(const TriangleMesh& mesh) {
     face.middle = (p[0] + p[1] + p[2]) / 3;
     face.reach = 0;
     for (const Term& term : face.cubic) face.reach = std::max(face.reach, (term.point - face.middle).norm());
+    face.axis = Vec3::Zero();
+    for (const Term& term : face.quadratic) face.axis += term.point;
+    face.spread = 0;
+    for (const Term& term : face.quadratic) face.spread = std::max(face.spread, angleBetween(term.point, face.axis));
     faces_.push_back(face);
+  }
+}
+
+void ShellOracle::findSharpEnds() {
+  std::vector<int> number(corners_.size(), -1);
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    for (const int side : {0, 1}) {
+      const int vertex = edges_[i].ends[at(side)];
+      int& known = number[at(vertex)];
+      if (known < 0) {
+        known = static_cast<int>(sharp_ends_.size());
+        sharp_ends_.push_back({vertex, {}});
+      }
+      sharp_ends_[at(known)].edges.emplace_back(static_cast<int>(i), side);
+    }
   }
 }
 
 ShellOracle::Jet ShellOracle::jetAt(const Face& face, double u, double v) const {
   Jet x{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  const Powers pw(1 - u - v), pu(u), pv(v);
   for (const Term& term : face.cubic) {
-    const Monomial m = monomial(term.exponents, u, v);
+    const Monomial m = monomial(term.exponents, pw, pu, pv);
     x.S += term.factor * m.value * term.point;
     x.Su += term.factor * m.du * term.point;
     x.Sv += term.factor * m.dv * term.point;
   }
   for (const Term& term : face.quadratic) {
-    const Monomial m = monomial(term.exponents, u, v);
+    const Monomial m = monomial(term.exponents, pw, pu, pv);
     x.N += term.factor * m.value * term.point;
     x.Nu += term.factor * m.du * term.point;
     x.Nv += term.factor * m.dv * term.point;
@@ -216,7 +246,7 @@ std::optional<ShellSolution> ShellOracle::newton(const Vec3& C, int triangle, do
     const Vec3 F = x.S + h * x.N - C;
     if (F.norm() < 1e-14 * size_) {
       if (u < -kInside || v < -kInside || u + v > 1 + kInside) return std::nullopt;
-      return ShellSolution{triangle, x.S, unit(x.N), h * x.N.norm()};
+      return ShellSolution{triangle, x.S, unit(x.N), h * x.N.norm(), u, v};
     }
     Mat3 J;
     J << x.Su + h * x.Nu, x.Sv + h * x.Nv, x.N;
@@ -326,7 +356,8 @@ double ShellOracle::distanceToFace(const Face& face, const Vec3& C) const {
           tv = 1 - tu;
         }
         Vec3 S = Vec3::Zero();
-        for (const Term& term : face.cubic) S += term.factor * monomial(term.exponents, tu, tv).value * term.point;
+        const Powers pw(1 - tu - tv), pu(tu), pv(tv);
+        for (const Term& term : face.cubic) S += term.factor * monomial(term.exponents, pw, pu, pv).value * term.point;
         const double distance = (S - C).norm();
         if (distance >= nearest) continue;
         nearest = distance;

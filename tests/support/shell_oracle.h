@@ -26,8 +26,16 @@ namespace pincer::tests {
 
 struct ShellSolution {
   int triangle;
-  Vec3 S, n;  // [m], unit
-  double h;   // [m]
+  Vec3 S, n;    // [m], unit
+  double h;     // [m]
+  double u, v;  // barycentric coordinates of corners 1 and 2
+};
+
+// A solution of any of the three equations.
+struct ShellPlace {
+  Vec3 S, n;       // [m], unit
+  double h;        // [m], negative when the centre lies under the surface
+  bool is_stable;  // it moves with the centre, not against it: a minimum of the distance along the surface
 };
 
 class ShellOracle {
@@ -37,6 +45,10 @@ class ShellOracle {
 
   // Every solution on a face within its borders (to 1e-9 of the barycentric coordinates).
   std::vector<ShellSolution> faceSolutions(const Vec3& C) const;
+  // All places with |h| < `reach` that have C on their normal, each once (shell_places.cpp).
+  std::vector<ShellPlace> placesNear(const Vec3& C, double reach) const;
+  // True if a flat triangle lies between the two.
+  bool isHidden(const Vec3& a, const Vec3& b) const;
   // From `C` to the patches [m].
   double distance(const Vec3& C) const;
 
@@ -57,12 +69,19 @@ class ShellOracle {
     std::array<Term, 10> cubic;
     std::array<Term, 6> quadratic;
     Vec3 middle;
-    double reach;  // of the control points from `middle` [m]
+    double reach;   // of the control points from `middle` [m]
+    Vec3 axis;      // of a cone that holds all normals
+    double spread;  // its half angle [rad]
   };
   struct SharpEdge {
     std::array<Vec3, 4> curve;
     std::array<Vec3, 3> left, right;
     bool is_border;
+    std::array<int, 2> ends;  // vertices
+  };
+  struct SharpEnd {  // a vertex with sharp edges, each with its parameter there
+    int vertex;
+    std::vector<std::pair<int, double>> edges;
   };
   struct Jet {
     Vec3 S, Su, Sv, N, Nu, Nv;
@@ -72,12 +91,19 @@ class ShellOracle {
   };
 
   void buildFaces(const contact::TriangleMesh& mesh);
+  void findSharpEnds();
   Jet jetAt(const Face& face, double u, double v) const;
   std::optional<ShellSolution> newton(const Vec3& C, int triangle, double u, double v) const;
   bool isFaceSolution(const Vec3& C, const contact::SurfaceContact& answer) const;
   bool isEdgeContact(const Vec3& C, const contact::SurfaceContact& answer) const;
   bool isVertexContact(const Vec3& C, const contact::SurfaceContact& answer) const;
   double distanceToFace(const Face& face, const Vec3& C) const;
+  bool mayFace(const Face& face, const Vec3& C) const;
+  bool isStable(const Vec3& C, const ShellSolution& s) const;
+  void addFacePlaces(const Vec3& C, double reach, std::vector<ShellPlace>& found) const;
+  void addEdgePlaces(const Vec3& C, double reach, std::vector<ShellPlace>& found) const;
+  void addVertexPlaces(const Vec3& C, double reach, std::vector<ShellPlace>& found) const;
+  void addPlace(const ShellPlace& place, std::vector<ShellPlace>& found) const;
   bool isBetween(const SharpEdge& edge, double s, const Vec3& n) const;
 
   contact::TriangleMesh mesh_;
@@ -85,6 +111,7 @@ class ShellOracle {
   contact::CornerNormals normals_;
   std::vector<Face> faces_;
   std::vector<SharpEdge> edges_;
+  std::vector<SharpEnd> sharp_ends_;
   std::vector<std::vector<Corner>> corners_;  // per vertex
   double size_;
 };
