@@ -85,13 +85,11 @@ struct SurfaceTracker {
   // where the fingertip's centre was, or would have been had it not been pressed under the surface [m]
   Vec3 p_BC = Vec3::Zero();
   Vec3 p_BC_last = Vec3::Zero();  // where it was
-  bool has_centre = false;        // whether it has been outside
+  bool has_centre = false;        // it has been outside
   SurfaceLook look;
-  // parts of the look's list whose turn to be tried has passed; the next query goes on behind them
-  std::int32_t tried = 0;
-  double gone = 0;              // the length of the centre's way so far, and of what the reach has grown by [m]
-  double full_at = -kInfinity;  // `gone` where a further contact last found no slot [m]
-  double reach = 0;             // how far from the centre contacts were followed in the last query [m]
+  double reach = 0;             // how far from it contacts were followed [m]
+  std::uint32_t turn = 0;       // how far around the circle of places' turns it has gone (surface/lookout.h)
+  double left_out = kInfinity;  // the way since a place that was touched found no slot [m]
   std::uint32_t status = 0;     // bits of QueryStatus of the last query
   // Which of the cache's memories of what is near is this tracker's. No answer depends on it; trackers that share a
   // cache and a number cost a look around at every query.

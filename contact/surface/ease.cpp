@@ -4,27 +4,23 @@
 
 namespace pincer::contact {
 
+using State = HeldContact::State;
+
 void EasedContacts::moveOn(int slot, const ShellContact& contact) {
-  const SurfaceSlot& before = kept(slot);
-  const bool continued = contact.converged && continues(before, contact);
-  if (continued && !isListed(contact)) {
-    had_contacts_ = true;
-    return keep(slot, contact);
-  }
+  if (contact.converged && continues(kept(slot), contact) && !isListed(contact)) return keep(slot, contact);
   lose(slot);
-  const bool is_behind = !(contact.h > 0 || heightBefore(before) <= 0);  // none slides to behind the surface
-  if (contact.converged && !continued && !is_behind) slid_.push_back(contact);
 }
 
+void EasedContacts::keep(int slot, const ShellContact& contact) {
+  had_contacts_ = true;
+  held(slot) = {State::followed, false, std::max(0.0, kept(slot).ease - ball_.moved), contact};
+}
+
+// Fades for as long as it would push, and is eased away by as much as the centre moves.
 void EasedContacts::lose(int slot) {
   had_contacts_ = true;
-  lost_.push_back(slot);
-}
-
-void EasedContacts::settle() {
-  for (const ShellContact& contact : slid_) {
-    if (!isListed(contact) && hasFreeSlot()) addNew(contact);
-  }
+  HeldContact& lost = held(slot) = {State::fades, false, kept(slot).ease + ball_.moved, planeOf(slot)};
+  if (lost.shown() >= ball_.r) lost.state = State::none;
 }
 
 ShellContact EasedContacts::onItsSide(const SurfaceSlot& kept, const ShellContact& contact) const {
@@ -47,47 +43,81 @@ bool EasedContacts::continues(const SurfaceSlot& kept, const ShellContact& conta
   return (now * contact.n - before * kept.n_B).norm() <= kSlack * turn * ball_.moved + kStill * ball_.r;
 }
 
+int EasedContacts::alone() const {
+  if (count(State::none) != kMaxSurfaceContacts - 1) return -1;
+  for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
+    if (at(slot).isFollowed()) return slot;
+  }
+  return -1;
+}
+
 bool EasedContacts::isListed(const ShellContact& contact) const {
-  return isAny([&](const FollowedContact& other) {
+  return isAny([&](const HeldContact& other) {
     return (ball_.placeOf(other.contact) - ball_.placeOf(contact)).norm() < kOnePlace * ball_.r;
   });
 }
 
 double EasedContacts::nearestHeight() const {
   double h = kInfinity;
-  for (const FollowedContact& f : list_) h = f.fades ? h : std::min(h, f.contact.h);
+  for (const HeldContact& f : held_) h = f.isFollowed() ? std::min(h, f.contact.h) : h;
   return h;
 }
 
-double EasedContacts::heightToYield() const {
+// Where none may yield: of those that would be touched, for it has to be told that they are left out.
+double EasedContacts::heightToBeat() const {
+  if (hasRoom()) return kInfinity;
   double highest = 0;
-  for (const FollowedContact& f : list_) highest = mayYield(f) ? std::max(highest, f.contact.h) : highest;
-  return highest;
+  for (const HeldContact& f : held_) highest = mayYield(f) ? std::max(highest, f.contact.h) : highest;
+  return highest > 0 ? highest : ball_.r;
 }
 
 // Its overlap begins at zero, but for the way that the finger can have come closer.
-void EasedContacts::addNew(const ShellContact& contact) {
-  list_.push_back({contact, takeSlot(), true, false, easeOfNew(contact)});
+HeldContact EasedContacts::newOne(const ShellContact& contact) const {
+  const double overlap = ball_.eases && had_contacts_ ? ball_.r - contact.h - ball_.moved : 0;
+  return {State::followed, true, std::max(0.0, overlap), contact};
 }
 
-double EasedContacts::easeOfNew(const ShellContact& contact) const {
-  return ball_.eases && had_contacts_ ? std::max(0.0, ball_.r - contact.h - ball_.moved) : 0;
+// A slot for a new contact; null without. Of two that fade the first then pushes as both did.
+HeldContact* EasedContacts::room() {
+  HeldContact* fading = nullptr;
+  for (HeldContact& f : held_) {
+    if (f.state == State::none) return &f;
+  }
+  for (HeldContact& f : held_) {
+    if (f.state != State::fades) continue;
+    if (!fading) {
+      fading = &f;
+      continue;
+    }
+    ShellContact& plane = fading->contact;
+    const Vec3 push = (ball_.r - fading->shown()) * plane.n + (ball_.r - f.shown()) * f.contact.n;
+    if (push.norm() > 0) plane.n = push.normalized();
+    plane.h = ball_.r - push.norm();
+    fading->ease = 0;
+    return &f;
+  }
+  return nullptr;
 }
 
 // The walls of a hole hardly wider than the finger leave room for its floor.
-void EasedContacts::admit(const ShellContact& contact) {
-  if (!list_.isFull()) return addNew(contact);
-  FollowedContact* highest = nullptr;
-  for (FollowedContact& other : list_) {
+bool EasedContacts::admit(const ShellContact& contact) {
+  if (HeldContact* const free = room()) {
+    *free = newOne(contact);
+    return true;
+  }
+  HeldContact* highest = nullptr;
+  for (HeldContact& other : held_) {
     const bool may_go = mayYield(other) && other.contact.h > contact.h + (other.is_new ? 0 : kOnePlace * ball_.r);
     if (may_go && (!highest || other.contact.h > highest->contact.h)) highest = &other;
   }
-  if (highest) *highest = {contact, highest->slot, true, false, easeOfNew(contact)};
+  const bool is_touched_left_out = highest ? highest->shown() < ball_.r : contact.h < ball_.r;
+  if (highest) *highest = newOne(contact);
+  return !is_touched_left_out;
 }
 
 void EasedContacts::admitNearest(const ShellContact& contact) {
-  if (list_.isFull()) list_.pop_back();
-  addNew(contact);
+  HeldContact* const free = room();
+  *(free ? free : &held_.back()) = newOne(contact);
 }
 
 ShellContact EasedContacts::planeOf(int slot) const {
@@ -95,84 +125,40 @@ ShellContact EasedContacts::planeOf(int slot) const {
   return {footOf(plane), plane.n_B, (ball_.C - plane.p_BS).dot(plane.n_B), false, {}};
 }
 
-int EasedContacts::deepestLost() const {
-  return *std::min_element(lost_.begin(), lost_.end(), [&](int a, int b) { return heightOfLost(a) < heightOfLost(b); });
-}
-
-void EasedContacts::fadeLost() {
-  if (!ball_.eases) return;
-  for (const int slot : lost_) {
-    if (list_.isFull()) return;
-    if (isTaken(slot)) continue;
-    const FollowedContact plane{planeOf(slot), slot, false, true, kept(slot).ease + ball_.moved};
-    if (plane.shown() < ball_.r) list_.push_back(plane);
-  }
-}
-
-bool EasedContacts::isTaken(int slot) const {
-  return std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& f) { return f.slot == slot; });
-}
-
-// True if a slot that was lost still pushes, and nothing has taken it.
-bool EasedContacts::isFading(int slot) const {
-  return std::find(lost_.begin(), lost_.end(), slot) != lost_.end() && !isTaken(slot) && pushes(slot);
-}
-
-// One in which nothing is followed nor fades; -1 without.
-int EasedContacts::spareSlot() const {
+int EasedContacts::deepestFading() const {
+  int deepest = -1;
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
-    if (!isTaken(slot) && !isFading(slot)) return slot;
+    if (at(slot).state == State::fades && (deepest < 0 || at(slot).shown() < at(deepest).shown())) deepest = slot;
   }
-  return -1;
+  return deepest;
 }
 
-bool EasedContacts::hasFreeSlot() const {
-  return spareSlot() >= 0 || std::count_if(lost_.begin(), lost_.end(), [&](int slot) { return isFading(slot); }) > 1;
+void EasedContacts::dropFading() {
+  for (HeldContact& f : held_) f.state = f.state == State::fades && !ball_.eases ? State::none : f.state;
 }
 
-// For a new contact. Without a spare one, two that fade are joined: one plane pushes as both did.
-int EasedContacts::takeSlot() {
-  if (const int spare = spareSlot(); spare >= 0) return spare;
-  int slot = -1, other = -1;
-  for (const int lost : lost_) {
-    if (!isFading(lost)) continue;
-    other = slot;
-    slot = lost;
-  }
-  if (other >= 0) join(other, slot);
-  return slot;
-}
-
-// The other one pushes no more, whatever becomes of the contact that it makes room for.
-void EasedContacts::join(int slot, int other) {
-  const double r = ball_.r;
-  const Vec3 push = (r - heightOfLost(slot)) * kept(slot).n_B + (r - heightOfLost(other)) * kept(other).n_B;
-  SurfaceSlot& joined = slotAt(slot);
-  if (push.norm() > 0) joined.n_B = push.normalized();
-  joined.p_BS = ball_.C - (r - push.norm()) * joined.n_B;
-  joined.ease = 0;
-  slotAt(other).ease = kInfinity;
-}
-
-void EasedContacts::answer(SurfaceContacts& found, std::uint32_t& status) {
-  std::sort(list_.begin(), list_.end(), [](const FollowedContact& a, const FollowedContact& b) {
-    return a.shown() < b.shown() || (a.shown() == b.shown() && a.slot < b.slot);
-  });
-  std::array<bool, kMaxSurfaceContacts> stays = {};
-  for (const FollowedContact& f : list_) {
-    if (found.count > 0 && f.shown() >= ball_.reach) continue;
-    if (f.fades || f.ease > 0) status |= kQueryEased;
+const ShellContact& EasedContacts::answer(SurfaceContacts& found, std::uint32_t& status) {
+  std::array<int, kMaxSurfaceContacts> order = {0, 1, 2};
+  const auto height = [&](int slot) { return at(slot).state == State::none ? kInfinity : at(slot).shown(); };
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return height(a) < height(b) || (height(a) == height(b) && a < b); });
+  for (const int slot : order) {
+    const HeldContact& f = at(slot);
+    SurfaceSlot& kept = slots_[static_cast<std::size_t>(slot)];
+    if (f.state == State::none || (found.count > 0 && f.shown() >= ball_.reach)) {
+      if (kept.triangle >= 0) kept = {};
+      continue;
+    }
+    const bool fades = f.state == State::fades;
+    if (fades || f.ease > 0) status |= kQueryEased;
     const ShellContact& c = f.contact;
     const Vec3 S = ball_.placeOf(c);
-    stays[static_cast<std::size_t>(f.slot)] = true;
-    slotAt(f.slot) = {c.foot.triangle, f.fades, c.foot.b[1], c.foot.b[2], f.ease, S, c.n, c.motion.du, c.motion.dv};
+    kept = {c.foot.triangle, fades, c.foot.b[1], c.foot.b[2], f.ease, S, c.n, c.motion.du, c.motion.dv};
     if (found.count > 0 && f.shown() >= ball_.shown) continue;
     found.points[static_cast<std::size_t>(found.count++)] = {S, c.n, f.shown() - ball_.r,
-                                                             static_cast<std::uint32_t>(f.slot)};
+                                                             static_cast<std::uint32_t>(slot)};
   }
-  for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
-    if (!stays[static_cast<std::size_t>(slot)] && kept(slot).triangle >= 0) slotAt(slot) = {};
-  }
+  return at(order[0]).contact;
 }
 
 }  // namespace pincer::contact

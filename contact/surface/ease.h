@@ -21,7 +21,6 @@
 #include <algorithm>
 
 #include "pincer/contact/surface/shell_contact.h"
-#include "pincer/contact/surface/short_list.h"
 #include "pincer/contact/surface_contact.h"
 
 namespace pincer::contact {
@@ -32,7 +31,8 @@ struct TouchingBall {
   Vec3 C_last;   // at the last query [m]
   double r;      // its radius [m]
   double moved;  // |C - C_last| [m]
-  double shown;  // how near to the centre contacts have to be to be reported [m]
+  double gone;   // and by how much `reach` has grown [m]
+  double shown;  // how near to the centre contacts have to be to be told of [m]
   double reach;  // and to be followed [m], >= shown
   double turn;   // the way within which each place is tried once [m]; 0: in every query
   bool eases;    // false: contacts come and go as they are found
@@ -40,99 +40,82 @@ struct TouchingBall {
   Vec3 placeOf(const ShellContact& c) const { return C - c.h * c.n; }
 };
 
-struct FollowedContact {
-  ShellContact contact;
-  int slot = -1;
-  bool is_new = false;
-  bool fades = false;
-  double ease = 0;  // [m]
+// A slot's contact in this query.
+struct HeldContact {
+  enum class State : std::uint8_t { none, followed, fades };
 
+  State state = State::none;
+  bool is_new = false;
+  double ease = 0;       // [m]
+  ShellContact contact;  // of one that fades: the plane that it was
+
+  bool isFollowed() const { return state == State::followed; }
   double shown() const { return contact.h + ease; }
 };
 
 class EasedContacts {
  public:
-  using List = ShortList<FollowedContact, kMaxSurfaceContacts>;
-
   EasedContacts(const TouchingBall& ball, std::array<SurfaceSlot, kMaxSurfaceContacts>& slots)
       : ball_(ball), slots_(slots) {}
 
-  // Takes what the slots' contacts have become. Each slot in use is told of once, then settle(). Not converged is lost.
+  // Takes what the contact of a slot in use has become; not converged is lost.
   void moveOn(int slot, const ShellContact& contact);
   void lose(int slot);
-  void settle();
   // `contact`, but from the other side where the centre passed from in front of the plane across an edge's normal to
   // behind it: beside a fin the finger was caught between the edge and itself, or lost it.
   ShellContact onItsSide(const SurfaceSlot& kept, const ShellContact& contact) const;
   // True if the contact is the slot's moved on.
   bool continues(const SurfaceSlot& kept, const ShellContact& contact) const;
 
-  const List& list() const { return list_; }
   const SurfaceSlot& kept(int slot) const { return slots_[static_cast<std::size_t>(slot)]; }
-  bool hasHistory() const { return had_contacts_; }  // the last query had contacts
-  bool hasLost() const { return !lost_.empty(); }
-  bool isAlone() const { return lost_.empty() && list_.size() == 1 && !list_.front().fades; }
-  bool follows() const {
-    return isAny([](const FollowedContact&) { return true; });
-  }
-  // The normal of the contact that is followed in that slot; zero without one.
-  Vec3 normalIn(int slot) const {
-    for (const FollowedContact& f : list_) {
-      if (f.slot == slot && !f.fades) return f.contact.n;
-    }
-    return Vec3::Zero();
-  }
-  bool touches() const { return nearestHeight() < ball_.r; }
-  double nearestHeight() const;  // [m]
-  double heightToYield() const;  // of the highest that leaves its slot to a nearer one, all slots taken; 0 without [m]
-  bool isListed(const ShellContact& contact) const;
-  // True if `is(f)` for any that is followed, not fading.
+  const HeldContact& at(int slot) const { return held_[static_cast<std::size_t>(slot)]; }
+  // True if `is(held)` for any that is followed.
   template <class Is>
   bool isAny(Is&& is) const {
-    return std::any_of(list_.begin(), list_.end(), [&](const FollowedContact& f) { return !f.fades && is(f); });
+    return std::any_of(held_.begin(), held_.end(), [&](const HeldContact& f) { return f.isFollowed() && is(f); });
   }
+  bool hadContacts() const { return had_contacts_; }  // the last query had
+  bool hasRoom() const { return count(HeldContact::State::none) > 0 || count(HeldContact::State::fades) > 1; }
+  bool follows() const {
+    return isAny([](const HeldContact&) { return true; });
+  }
+  int count(HeldContact::State state) const {
+    return static_cast<int>(std::count_if(held_.begin(), held_.end(), [&](const auto& f) { return f.state == state; }));
+  }
+  int alone() const;  // the only slot in use, if its contact is followed; else -1
+  bool fades() const { return count(HeldContact::State::fades) > 0; }
+  double nearestHeight() const;  // of those that are followed [m]
+  double heightToBeat() const;   // that another contact has to be lower than, to be taken [m]
+  bool isListed(const ShellContact& contact) const;
 
-  // A further contact. Where no slot is left the highest goes that may and is clearly higher, or it isn't taken.
-  void admit(const ShellContact& contact);
+  // A further contact. Where there is no room the highest goes that may and is clearly higher, or it isn't taken. False
+  // if one that is touched was left out.
+  bool admit(const ShellContact& contact);
   // The nearest place of all, whatever has to go for it.
   void admitNearest(const ShellContact& contact);
   // The slot's contact is this one now; or stays the plane that it was.
-  void keep(int slot, const ShellContact& contact) { list_.push_back({contact, slot, false, false, easeNow(slot)}); }
-  void hold(int slot) { list_.push_back({planeOf(slot), slot, false, false, kept(slot).ease}); }
-
-  // Of the lost ones, of which there are some: the deepest, as a plane.
-  int deepestLost() const;
+  void keep(int slot, const ShellContact& contact);
+  void hold(int slot) { held(slot) = {HeldContact::State::followed, false, kept(slot).ease, planeOf(slot)}; }
+  int deepestFading() const;  // of which there are some
   ShellContact planeOf(int slot) const;
-  bool pushes(int lost) const { return !(heightOfLost(lost) + ball_.moved >= ball_.r); }
-  void forgetLost() { lost_.clear(); }
-  void fadeLost();
-  void clear() { list_.clear(); }
+  // Where nothing is eased, none fades.
+  void dropFading();
 
-  // Writes the slots, and those that are near enough to `found`, the deepest first; status gets kQueryEased.
-  void answer(SurfaceContacts& found, std::uint32_t& status);
+  // Writes the slots, and those that are near enough to `found`, the deepest first; status gets kQueryEased. Returns
+  // the deepest. Requires one at least.
+  const ShellContact& answer(SurfaceContacts& found, std::uint32_t& status);
 
  private:
-  SurfaceSlot& slotAt(int slot) { return slots_[static_cast<std::size_t>(slot)]; }
+  HeldContact& held(int slot) { return held_[static_cast<std::size_t>(slot)]; }
   // How high the centre was over it at the last query [m].
   double heightBefore(const SurfaceSlot& kept) const { return (ball_.C_last - kept.p_BS).dot(kept.n_B); }
-  // How high it is over what a lost slot stands for, as far as that has been eased away [m].
-  double heightOfLost(int slot) const { return planeOf(slot).h + kept(slot).ease; }
-  double easeOfNew(const ShellContact& contact) const;
-  double easeNow(int slot) const { return std::max(0.0, kept(slot).ease - ball_.moved); }
-  void addNew(const ShellContact& contact);
-  bool mayYield(const FollowedContact& f) const { return f.is_new || (!f.fades && f.shown() > ball_.r); }
-  bool isTaken(int slot) const;
-  bool isFading(int slot) const;
-  bool hasFreeSlot() const;
-  int spareSlot() const;
-  int takeSlot();
-  void join(int slot, int other);
+  HeldContact newOne(const ShellContact& contact) const;
+  bool mayYield(const HeldContact& f) const { return f.is_new || (f.isFollowed() && f.shown() > ball_.r); }
+  HeldContact* room();
 
   const TouchingBall& ball_;
   std::array<SurfaceSlot, kMaxSurfaceContacts>& slots_;
-  List list_;
-  ShortList<int, kMaxSurfaceContacts> lost_;  // slots whose contacts have lost their solutions
-  ShortList<ShellContact, kMaxSurfaceContacts> slid_;
+  std::array<HeldContact, kMaxSurfaceContacts> held_;  // by slot
   bool had_contacts_ = false;
 };
 

@@ -15,49 +15,42 @@ constexpr double kAtOnce = 1e-300;  // a horizon that only what matters now is w
 
 // Keeps the nearer half; the horizon is where the others begin.
 void halve(NearParts& found) {
-  std::array<float, kMostParts> approaches;
-  std::transform(found.parts.begin(), found.parts.end(), approaches.begin(),
-                 [](const NearPart& p) { return p.approach; });
+  std::array<double, kMostParts> approaches;
+  std::transform(found.parts.begin(), found.parts.end(), approaches.begin(), [](const NearPart& p) { return p.due; });
   const auto middle = approaches.begin() + kMostParts / 2;
   std::nth_element(approaches.begin(), middle, approaches.end());
   found.look.horizon = *middle;
-  std::erase_if(found.parts, [&](const NearPart& p) { return !(p.approach < found.look.horizon); });
+  std::erase_if(found.parts, [&](const NearPart& p) { return !(p.due < found.look.horizon); });
 }
 
 // Where too many parts matter at once (near the middle of a bowl): those where the flat mesh is nearest among its
 // neighbours, vouched for at this place alone.
-void keepMinima(const SurfaceNet& net, const SurfaceSearch& search, double gone_at_look, NearParts& found) {
+void keepMinima(const SurfaceNet& net, const SurfaceSearch& search, NearParts& found) {
   found.look.horizon = 0;
   search.visitParts(found.look.p_BC, found.look.reach, kAtOnce, {}, [&](std::int32_t place, double) {
     if (found.parts.size() < kMostParts && search.minimumOn(net, place, found.look.p_BC, found.look.reach))
-      found.parts.push_back({place, 0, gone_at_look, 0});
+      found.parts.push_back({place, 0});
   });
 }
 
 }  // namespace
 
-void listNearParts(const SurfaceNet& net, const SurfaceSearch& search, const SurfaceLook& look, double gone_at_look,
-                   NearParts& found) {
+void listNearParts(const SurfaceNet& net, const SurfaceSearch& search, const SurfaceLook& look, NearParts& found) {
   PINCER_ASSERT(!(look.reach <= 0));
   found.net = net.fingerprint();
   found.look = look;
   found.look.horizon = kLookHorizon * look.reach;
   found.parts.clear();
-  found.due = 0;
+  found.gone = 0;
+  found.p_BC = look.p_BC;
+  found.reach = look.reach;
   search.visitParts(look.p_BC, look.reach, found.look.horizon, ConesAlong(look.n),
                     [&](std::int32_t place, double approach) {
                       if (found.parts.size() == kMostParts) halve(found);
                       PINCER_ASSERT(found.parts.size() < found.parts.capacity());  // the tick allocates nothing
-                      const float rounded = below(approach);
-                      if (approach < found.look.horizon)
-                        found.parts.push_back({place, rounded, gone_at_look + rounded, 0});
+                      if (approach < found.look.horizon) found.parts.push_back({place, below(approach)});
                     });
-  if (!(found.look.horizon > 0)) keepMinima(net, search, gone_at_look, found);
-}
-
-void forgetDues(double gone_at_look, NearParts& near) {
-  for (NearPart& part : near.parts) part = {part.place, part.approach, gone_at_look + part.approach, 0};
-  near.due = 0;
+  if (!(found.look.horizon > 0)) keepMinima(net, search, found);
 }
 
 }  // namespace pincer::contact

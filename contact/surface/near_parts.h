@@ -12,12 +12,12 @@
 // turned by no more than the other half, it can't hold another contact. So on a smooth surface the list is
 // short or empty, however fine the mesh is.
 //
-// Each part has its own `due`: until then it can't matter, so a tick looks at those only that are due and have their
-// turn (turns.h).
+// Each part has its own `due`: until then it can't matter, so a tick looks at those only that are due.
 //
 // All of this is scratch: the parts are a function of mesh and look, and what isn't due would be found not to matter.
 // So no answer depends on what is due when, nor on whether the list had to be made anew.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -30,36 +30,35 @@ constexpr std::size_t kMostParts = 512;  // of a list; a full one keeps its near
 
 struct NearPart {
   std::int32_t place;  // in the search's order
-  float approach;      // [m], rounded down
-  double due;          // SurfaceTracker::gone at which it may matter, no later [m]
-  double turn = 0;     // at which it may be tried for another contact, no later [m]
+  double due;          // the way from the look on at which it may matter, no later [m]
 };
 
-// Of one finger. What is due when holds for ways from where the last query left the centre.
+// Of one finger.
 struct NearParts {
   std::uint64_t net = 0;  // the mesh's fingerprint; 0: of none
   // its centre, reach and normals; the horizon is shorter than asked for where more than kMostParts are near
   SurfaceLook look;
   std::vector<NearPart> parts;  // by place, as the tree has them
-  double due = 0;               // no later than any of them is and has its turn [m]
-  Vec3 p_BC = Vec3::Zero();     // the last query's
+  // the way since the look, and how far the reach has grown [m]; to where
   double gone = 0;
+  Vec3 p_BC = Vec3::Zero();
+  double reach = 0;
 
   // True if they are those of that look.
   bool areOf(std::uint64_t mesh, const SurfaceLook& other) const {
     return net == mesh && look.p_BC == other.p_BC && look.reach == other.reach && look.n == other.n;
+  }
+  void advance(const Vec3& to, double reach_there) {
+    gone += (to - p_BC).norm() + std::max(0.0, reach_there - reach);
+    p_BC = to;
+    reach = reach_there;
   }
 };
 
 class SurfaceNet;
 class SurfaceSearch;
 
-// Lists the parts of a look. `gone_at_look`: SurfaceTracker::gone less the way from the look to where the centre is now
-// [m]. Allocates nothing in a NearParts that has room.
-void listNearParts(const SurfaceNet& net, const SurfaceSearch& search, const SurfaceLook& look, double gone_at_look,
-                   NearParts& found);
-
-// Forgets what was known of the parts but their approach.
-void forgetDues(double gone_at_look, NearParts& near);
+// Lists the parts of a look. Allocates nothing in a NearParts that has room.
+void listNearParts(const SurfaceNet& net, const SurfaceSearch& search, const SurfaceLook& look, NearParts& found);
 
 }  // namespace pincer::contact

@@ -12,7 +12,8 @@ namespace {
 // The variants but `smooth` show what they do at edges: jump. After a leap there is nothing to be steady with.
 TouchingBall ballAt(const Vec3& C, double r, double margin, SurfaceVariant variant, const SurfaceTracker& tracker) {
   const double moved = (C - tracker.p_BC_last).norm(), turn = variant == SurfaceVariant::smooth ? kWay * r : 0;
-  return {C, tracker.p_BC_last, r, moved, r + margin, r + margin + turn, turn, turn > 0 && !(moved > kLeap * r)};
+  const double reach = r + margin + turn, gone = moved + std::max(0.0, reach - tracker.reach);
+  return {C, tracker.p_BC_last, r, moved, gone, r + margin, reach, turn, turn > 0 && moved <= kLeap * r};
 }
 
 bool isOn(const SurfaceNet& net, const SurfaceSlot& slot) { return slot.triangle >= 0 && slot.triangle < net.size(); }
@@ -40,7 +41,7 @@ int onlySlot(const SurfaceTracker& tracker) {
   const ShellContact contact =
       solveShellBeside(surface.net, surface.cache, ball.C, footOf(kept), {kept.du, kept.dv}, ball.C - ball.C_last);
   if (!contact.converged || !(contact.h > 0 && contact.h < ball.reach) || !contacts.continues(kept, contact) ||
-      !lookout.isQuietAround(slot, contact.n))
+      !lookout.isGoodAlone(slot, contact.n))
     return false;
   const Vec3 S = ball.placeOf(contact);
   kept = {contact.foot.triangle, false, contact.foot.b[1], contact.foot.b[2], 0, S, contact.n, contact.motion.du,
@@ -49,7 +50,7 @@ int onlySlot(const SurfaceTracker& tracker) {
   found.count = 1;
   found.cost.iterations = found.cost.longest_walk = contact.cost.steps;
   found.cost.crossings = contact.cost.crossings;
-  lookout.end(contact);
+  lookout.remember(contact);
   return true;
 }
 
@@ -68,7 +69,6 @@ void followSlots(const FeltSurface& surface, const TouchingBall& ball, EasedCont
     contact.converged = contact.converged && !isFarSide(surface, ball.C, ball.r, kept, contact);
     contacts.moveOn(slot, contact);
   }
-  contacts.settle();
 }
 
 }  // namespace
@@ -83,8 +83,7 @@ SurfaceContacts touchSurface(const FeltSurface& surface, const SurfaceSearch& se
   if (!followAlone(surface, ball, contacts, lookout, tracker, found)) {
     followSlots(surface, ball, contacts, found.cost);
     lookout.findOthers();
-    contacts.answer(found, tracker.status);
-    lookout.end(contacts.list().front().contact);
+    lookout.remember(contacts.answer(found, tracker.status));
   }
   if (surface.variant == SurfaceVariant::force) shadeForce(surface.net, tracker, found);
   return found;

@@ -1,27 +1,20 @@
 #include <algorithm>
 
 #include "pincer/contact/surface/flat_minimum.h"
+#include "pincer/contact/surface/lone_contact.h"
 #include "pincer/contact/surface/lookout.h"
 #include "pincer/contact/surface/shell_face.h"
+#include "pincer/contact/surface/tolerances.h"
 
 namespace pincer::contact {
 
 namespace {
 
-constexpr int kMostTried = 16;   // places in a query; the others' turn comes in the next
-constexpr int kMostWalked = 32;  // steps and crossings of a query's tries; the last walk is always ended
+constexpr int kMostWork = 48;  // walks, steps and crossings of a query's tries; the others' turn comes in the next
 
-// True if the place is on this triangle, or on an edge or a vertex that it has too.
-bool isOn(const SurfaceNet& net, const Foot& foot, std::int32_t triangle) {
-  if (foot.triangle == triangle || foot.isOnFace()) return foot.triangle == triangle;
-  const auto& v = net.mesh().triangles[static_cast<std::size_t>(triangle)];
-  bool shares_all = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (foot.b[i] == 0) continue;
-    shares_all = shares_all && std::find(v.begin(), v.end(),
-                                         net.mesh().triangles[static_cast<std::size_t>(foot.triangle)][i]) != v.end();
-  }
-  return shares_all;
+bool shareVertex(const TriangleMesh& mesh, std::int32_t t, std::int32_t other) {
+  const auto &a = mesh.triangles[static_cast<std::size_t>(t)], &b = mesh.triangles[static_cast<std::size_t>(other)];
+  return std::any_of(a.begin(), a.end(), [&](std::int32_t v) { return v == b[0] || v == b[1] || v == b[2]; });
 }
 
 // Cosine of the angle between `n` and the nearest of the triangle's corner normals.
@@ -31,95 +24,77 @@ double closestNormal(const SurfaceNet& net, std::int32_t triangle, const Vec3& n
 
 }  // namespace
 
-// Tries the places that are due and have their turn, until so much has been tried as a query may try; the next one goes
-// on from there.
-void Lookout::examineDue(NearParts& near, bool are_all) {
-  if (hasTriedEnough()) return;
-  std::array<std::uint16_t, kMostParts> due;
-  std::size_t count = 0, first = 0;
-  near.due = kInfinity;
-  for (std::size_t i = 0; i < near.parts.size(); ++i) {
-    const NearPart& part = near.parts[i];
-    const double when = are_all ? part.due : std::max(part.due, part.turn);
-    const bool is_due = when <= gone_;
-    due[count] = static_cast<std::uint16_t>(i);
-    count += is_due;
-    first += is_due && i < static_cast<std::size_t>(tracker_.tried);
-    near.due = std::min(near.due, is_due ? kInfinity : when);
-  }
-  const Turns turns(tracker_.gone, gone_, ball_.turn);
-  tracker_.tried = 0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t i = due[first + k < count ? first + k : first + k - count];
-    NearPart& part = near.parts[i];
-    if (part.turn == 0) part.turn = tracker_.gone + turns.wayToFirst(part.place);
-    if ((part.turn <= gone_ || are_all) && !hasTriedEnough()) {
-      examine(turns, part);
-      if (hasTriedEnough()) tracker_.tried = static_cast<std::int32_t>(i + 1);
-    }
-    near.due = std::min(near.due, std::max(part.due, part.turn));
+// Places have their turns spread evenly around a circle, which is gone around once within `turn`.
+bool Lookout::hasTurn(const NearPart& part) const {
+  constexpr std::uint32_t kGolden = 2654435769;  // the circle over the golden ratio
+  return kGolden * static_cast<std::uint32_t>(part.place) - tracker_.turn <= share_;
+}
+
+bool Lookout::isNothingDue() {
+  if (!isNear()) return false;
+  if (tracker_.look.is_alone) return true;
+  NearParts& near = surface_.cache.partsOf(tracker_);
+  if (!near.areOf(surface_.net.fingerprint(), tracker_.look)) return false;
+  near.advance(ball_.C, ball_.reach);
+  return std::none_of(near.parts.begin(), near.parts.end(),
+                      [&](const NearPart& part) { return part.due <= near.gone && hasTurn(part); });
+}
+
+// Those that have their turn; all without anything to go by. What a query has too much work for waits for its next.
+void Lookout::examineNear(NearParts& near) {
+  const bool is_free = !(contacts_.nearestHeight() < ball_.r) && !contacts_.hasRoom();  // the nearest is the answer
+  const bool is_all = !contacts_.hadContacts() || !contacts_.follows() || is_free;
+  for (NearPart& part : near.parts) {
+    if (!(part.due <= near.gone && (is_all || hasTurn(part)))) continue;
+    if (work_ >= kMostWork) return;
+    part.due = near.gone + examine(part.place);
   }
 }
 
-// The rest waits for the next query; not where everyone has a turn, but for the places that can be remembered.
-bool Lookout::hasTriedEnough() const { return tries_ >= kMostTried || (walked_ >= kMostWalked && !isEveryonesTurn()); }
-
-// Without anything to go by, and in free space with all slots taken, where the nearest is the answer.
-bool Lookout::isEveryonesTurn() const {
-  return !contacts_.hasHistory() || !contacts_.follows() || (contacts_.list().isFull() && !contacts_.touches());
-}
-
-// How near a place has to be to be tried now [m]; 0: none is. Where all slots are taken it has to be nearer than what
-// may yield.
-double Lookout::reachOfTry(bool has_turn) const {
-  const bool is_free = !contacts_.hasHistory() || !contacts_.follows() || has_turn;
-  if (!contacts_.list().isFull()) return is_free ? ball_.reach : 0;
-  const double highest = contacts_.heightToYield();
-  const bool is_asked_again = gone_ - tracker_.full_at > 0.5 * ball_.turn;  // only to see whether a place is left out
-  if (!(highest > 0)) return is_free && is_asked_again ? ball_.reach : 0;
-  return is_free ? highest : contacts_.touches() ? 0 : std::min(highest, contacts_.nearestHeight());
-}
-
-void Lookout::examine(const Turns& turns, NearPart& near) {
-  const PatchBounds part = search_.part(near.place);
-  const auto [triangle, other] = search_.trianglesAt(near.place);
-  near.turn = gone_ + turns.wayToNext(near.place);
-  const double reach = reachOfTry(turns.isOf(near.place));
-  if (reach < ball_.reach && !(reach > 0 && part.mayHold(ball_.C, reach, Facing::front))) return;
-  const double way = std::max(0.0, part.approach(ball_.C, ball_.reach) - kRoundOff * surface_.net.length());
-  near.due = gone_ + way;
-  if (way > 0 || !part.mayHold(ball_.C, reach, Facing::front)) return;
-  if (isKnown(triangle, part) && (other == triangle || isKnown(other, part))) return;
+// Tries a place of the part, if it has one that is no followed contact's. Returns the way for which it can't matter.
+double Lookout::examine(std::int32_t place) {
+  const PatchBounds part = search_.part(place);
+  const double rounding = kRoundOff * surface_.net.length();
+  const double way = part.approach(ball_.C, ball_.reach) - rounding;
+  if (way > 0) return way;
+  const double reach = std::min(ball_.reach, contacts_.heightToBeat());
+  if (reach < ball_.reach && !part.mayHold(ball_.C, reach, Facing::front)) return 0;
+  const auto [triangle, other] = search_.trianglesAt(place);
+  if (isBeside(part, triangle) && (other == triangle || isBeside(part, other))) return 0;
   const FlatPoint flat = closestOnFacet(surface_.net, triangle, ball_.C);
   const double distance = std::sqrt(flat.distance2) - part.bulge;  // of large patches more than their balls tell
-  near.due += std::max(0.0, distance - ball_.reach - kRoundOff * surface_.net.length());
-  if (distance < reach && isFlatMinimum(surface_.net, triangle, flat, ball_.C)) tryPlace({triangle, flat.b});
+  if (distance < reach && !isKnown(triangle, flat) && isFlatMinimum(surface_.net, triangle, flat, ball_.C))
+    tryPlace({triangle, flat.b});
+  return std::max(0.0, distance - ball_.reach - rounding);
 }
 
-// True if a followed contact stands for this patch: beside it, with a normal that the patch's could be. (Not any of its
-// cone's: along a groove that holds the other wall's.)
-[[gnu::flatten]] bool Lookout::isKnown(std::int32_t triangle, const PatchBounds& part) const {
-  const double beside = std::max<double>(part.radius, kWay * ball_.r) + part.radius;
-  return contacts_.isAny([&](const FollowedContact& f) {
-    return isOn(surface_.net, f.contact.foot, triangle) ||
-           ((ball_.placeOf(f.contact) - part.middle()).squaredNorm() < beside * beside &&
-            closestNormal(surface_.net, triangle, f.contact.n) > kBeside);
+// True if the patch is beside a followed contact's, and bends so little that it holds no other.
+bool Lookout::isBeside(const PatchBounds& part, std::int32_t triangle) const {
+  return part.hollow * ball_.reach < LoneContact::kFits && contacts_.isAny([&](const HeldContact& f) {
+    return shareVertex(surface_.net.mesh(), triangle, f.contact.foot.triangle) &&
+           closestNormal(surface_.net, triangle, f.contact.n) > kBeside;
   });
+}
+
+// True if a followed contact stands for what is that way.
+bool Lookout::isKnown(std::int32_t triangle, const FlatPoint& flat) const {
+  Vec3 R = ball_.C;
+  for (int i = 0; i < 3; ++i) R -= flat.b[static_cast<std::size_t>(i)] * surface_.net.vertex(triangle, i);
+  const double least = kApart * std::sqrt(flat.distance2);
+  return contacts_.isAny([&](const HeldContact& f) { return f.contact.n.dot(R) > least; });
 }
 
 void Lookout::tryPlace(const Foot& foot) {
   const ShellContact found = follow(surface_, ball_.C, ball_.r, foot);
-  ++tries_;
-  walked_ += found.cost.steps + found.cost.crossings;
+  work_ += 1 + found.cost.steps + found.cost.crossings;
   if (!found.converged || !(found.h > 0 && found.h < ball_.reach) || !isNew(found)) return;
-  if (contacts_.list().isFull()) tracker_.full_at = gone_;
-  contacts_.admit(found);
+  if (!contacts_.admit(found)) tracker_.left_out = 0;
 }
 
 // True if it is a stable place, that the finger could come to from outside, and no followed contact's.
 bool Lookout::isNew(const ShellContact& candidate) const {
   constexpr double kShort = 0.95;  // of the way: a patch may bulge out of its triangle
-  if (contacts_.isAny([&](const FollowedContact& f) { return f.contact.n.dot(candidate.n) > kApart; })) return false;
+  if (contacts_.isAny([&](const HeldContact& f) { return f.contact.n.dot(candidate.n) > kApart; })) return false;
   const Foot& foot = candidate.foot;
   const Vec3& C = ball_.C;
   if (foot.isOnFace() &&

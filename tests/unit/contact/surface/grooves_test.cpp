@@ -404,7 +404,7 @@ TEST(SurfaceGrooves, AnswersDoNotDependOnWhatTheCacheHolds) {
       const SurfaceContacts b = elsewhere.at(C);
       ASSERT_TRUE(areSame(a, b)) << mesh.source << ' ' << i;
       ASSERT_TRUE(areSame(tip.tracker.look, elsewhere.tracker.look)) << i;
-      ASSERT_EQ(tip.tracker.tried, elsewhere.tracker.tried) << i;
+      ASSERT_EQ(tip.tracker.turn, elsewhere.tracker.turn) << i;
       looks += !tip.tracker.look.is_alone && tip.tracker.look.p_BC != before.look.p_BC;
       v = 0.98 * v + 0.2 * Vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)} -
           0.01 * C / C.norm();

@@ -14,7 +14,6 @@
 #include "pincer/contact/shape/convex_features.h"
 #include "pincer/contact/surface/aabb_tree.h"
 #include "pincer/contact/surface/patch_cache.h"
-#include "pincer/contact/surface/short_list.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/motion/mass.h"
 #include "pincer/engine/motion/one_freedom.h"
@@ -216,11 +215,6 @@ const SeededFault kOfOurs[] = {
     {"BoxInsideOut", "(box(item).low.array() <= box(item).high.array()).all()",
      [] {
        contact::AabbTree tree({{Vec3::UnitX(), Vec3::Zero()}});
-     }},
-    {"OneMoreThanThereIsRoomFor", "!isFull()",
-     [] {
-       contact::ShortList<int, 2> list;
-       for (int i = 0; i < 3; ++i) list.push_back(i);
      }},
     {"TriangleWithANegativeIndex", "std::min({triangles[t][0], triangles[t][1], triangles[t][2]}) >= 0",
      [] {
