@@ -1,5 +1,6 @@
 // When bodies hit each other: the root of the gap along the path that the solved contacts give.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "pincer/contact/functions/invariants.h"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double kGapRoundOff = 1e-14;  // at which the root is found [m]
 constexpr int kRootSteps = 40;          // a sphere above a plane needs one, rotating boxes five or six
+constexpr int kNewtonSteps = 8;         // more go to and fro between two points that close in turn
 
 // Gap of one contact point, its rate and acceleration, as they are at one moment.
 struct Approach {
@@ -85,10 +87,13 @@ class ClosingPair {
   // may turn in a step is limited by the gap.
   double time() {
     double t = 0;
+    Bracket bracket;
     for (int n = 0; n < kRootSteps && !isSpent(scratch_); ++n) {
       const Next next = look(t);
       if (!(next.step <= scratch_.h - t)) return std::numeric_limits<double>::infinity();
+      bracket.narrow(t, next.phi);
       t = std::max(t + next.step, 0.0);
+      if (n >= kNewtonSteps) t = bracket.within(t);
       if (std::abs(next.phi) <= kGapRoundOff || t == 0 || next.is_exact) return t;
     }
     return t;
@@ -99,6 +104,24 @@ class ClosingPair {
     double step = std::numeric_limits<double>::infinity();  // [s]
     double phi = std::numeric_limits<double>::infinity();   // gap of the point that closes first [m]
     bool is_exact = false;                                  // the step is below the round-off of the time
+  };
+
+  // Of moments looked at, the last one before anything overlaps and the first one at which something does [s].
+  struct Bracket {
+    double open = 0, closed = std::numeric_limits<double>::infinity();
+
+    void narrow(double t, double phi) {
+      if (phi < 0)
+        closed = std::min(closed, t);
+      else if (t < closed)
+        open = std::max(open, t);
+    }
+    // `t`, or the middle where that is no nearer to the root than an end.
+    double within(double t) const {
+      constexpr double kEnd = 1e-3;  // of the bracket
+      const double end = kEnd * (closed - open);
+      return t > open + end && t < closed - end ? t : std::isfinite(closed) ? 0.5 * (open + closed) : t;
+    }
   };
 
   Next look(double t) {
