@@ -69,43 +69,55 @@ void PlaceJudge::wander(const LedFinger& finger, const Vec3& home, int queries, 
 
 void PlaceJudge::judge(const LedFinger& finger, const Vec3& C, const Vec3& outside, const SurfaceContacts& found,
                        PlaceVerdicts& verdicts) const {
-  const double reach = finger.r + finger.margin;
-  const auto places = oracle_.placesNear(C, reach + kSlack);
   ++verdicts.judged;
   verdicts.several += found.count > 1;
-  const int counted = std::min(found.count, finger.counted);
-  for (int i = 0; i < counted; ++i) {
-    const SurfaceContact& c = found.points[static_cast<std::size_t>(i)];
+  const std::span<const SurfaceContact> told(found.points.data(),
+                                             static_cast<std::size_t>(std::min(found.count, finger.counted)));
+  const std::vector<ShellPlace> places = oracle_.placesNear(C, finger.r + finger.margin + kSlack);
+  for (const SurfaceContact& c : told) {
     const SurfaceSlot& slot = tracker_.slots[c.feature];
-    if (slot.fades || slot.ease > 0 || c.phi >= finger.margin || tracker_.status & contact::kQueryHeldDirection)
-      continue;
-    double nearest = std::numeric_limits<double>::infinity(), gap = 0;
-    for (const ShellPlace& place : places) {
-      if ((place.S - c.p_BS).norm() >= nearest) continue;
-      nearest = (place.S - c.p_BS).norm();
-      gap = std::abs(place.h - finger.r - c.phi);
-    }
-    if (nearest > kBeside) {
-      ++verdicts.extra;
-      verdicts.complain("extra", C, c.p_BS, c.phi);
-      continue;
-    }
-    verdicts.off_place = std::max(verdicts.off_place, nearest);
-    verdicts.off_gap = std::max(verdicts.off_gap, gap);
+    const bool is_held = (tracker_.status & contact::kQueryHeldDirection) != 0;
+    if (!slot.fades && slot.ease == 0 && c.phi < finger.margin && !is_held)
+      judgeContact(finger, C, c, places, verdicts);
   }
   if (found.count == contact::kMaxSurfaceContacts) return;  // more are left out
   for (const ShellPlace& place : places) {
-    if (!place.is_stable || !(place.h > 0 && place.h < reach - kSlack)) continue;
-    if (!((outside - place.S).dot(place.n) > 0) || oracle_.isHidden(C, C + kShort * (place.S - C))) continue;
-    ++verdicts.places;
-    const auto* const end = found.points.data() + counted;
-    if (std::any_of(found.points.data(), end, [&](const SurfaceContact& c) { return tells(c, place); })) continue;
-    ++verdicts.missed;
-    verdicts.complain("missed", C, place.S, place.h - finger.r);
-    if (!(place.h < finger.r - kSlack)) continue;
-    ++verdicts.felt;
-    verdicts.deepest = std::max(verdicts.deepest, finger.r - place.h);
+    if (mayBeTold(finger, C, outside, place)) judgePlace(finger, C, place, told, verdicts);
   }
+}
+
+// Is it one of the places?
+void PlaceJudge::judgeContact(const LedFinger& finger, const Vec3& C, const SurfaceContact& c,
+                              std::span<const ShellPlace> places, PlaceVerdicts& verdicts) const {
+  double nearest = std::numeric_limits<double>::infinity(), gap = 0;
+  for (const ShellPlace& place : places) {
+    if ((place.S - c.p_BS).norm() >= nearest) continue;
+    nearest = (place.S - c.p_BS).norm();
+    gap = std::abs(place.h - finger.r - c.phi);
+  }
+  if (nearest > kBeside) {
+    ++verdicts.extra;
+    return verdicts.complain("extra", C, c.p_BS, c.phi);
+  }
+  verdicts.off_place = std::max(verdicts.off_place, nearest);
+  verdicts.off_gap = std::max(verdicts.off_gap, gap);
+}
+
+bool PlaceJudge::mayBeTold(const LedFinger& finger, const Vec3& C, const Vec3& outside, const ShellPlace& place) const {
+  return place.is_stable && place.h > 0 && place.h < finger.r + finger.margin - kSlack &&
+         (outside - place.S).dot(place.n) > 0 && !oracle_.isHidden(C, C + kShort * (place.S - C));
+}
+
+// Is it told of?
+void PlaceJudge::judgePlace(const LedFinger& finger, const Vec3& C, const ShellPlace& place,
+                            std::span<const SurfaceContact> told, PlaceVerdicts& verdicts) const {
+  ++verdicts.places;
+  if (std::any_of(told.begin(), told.end(), [&](const SurfaceContact& c) { return tells(c, place); })) return;
+  ++verdicts.missed;
+  verdicts.complain("missed", C, place.S, place.h - finger.r);
+  if (!(place.h < finger.r - kSlack)) return;
+  ++verdicts.felt;
+  verdicts.deepest = std::max(verdicts.deepest, finger.r - place.h);
 }
 
 }  // namespace pincer::tests

@@ -5,6 +5,7 @@
 // any three may be told.
 #pragma once
 #include <memory>
+#include <span>
 #include <string>
 
 #include "pincer/contact/smooth_mesh.h"
@@ -51,6 +52,11 @@ class PlaceJudge {
  private:
   void judge(const LedFinger& finger, const Vec3& C, const Vec3& outside, const contact::SurfaceContacts& found,
              PlaceVerdicts& verdicts) const;
+  void judgeContact(const LedFinger& finger, const Vec3& C, const contact::SurfaceContact& c,
+                    std::span<const ShellPlace> places, PlaceVerdicts& verdicts) const;
+  bool mayBeTold(const LedFinger& finger, const Vec3& C, const Vec3& outside, const ShellPlace& place) const;
+  void judgePlace(const LedFinger& finger, const Vec3& C, const ShellPlace& place,
+                  std::span<const contact::SurfaceContact> told, PlaceVerdicts& verdicts) const;
 
   const contact::TriangleMesh mesh_;
   const ShellOracle oracle_;
