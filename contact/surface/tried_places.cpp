@@ -40,7 +40,8 @@ bool Lookout::isNothingDue() {
                       [&](const NearPart& part) { return part.due <= near.gone && hasTurn(part); });
 }
 
-// Tries those that have their turn; all without anything to go by. What a query has too much work for waits for its next.
+// Tries those that have their turn; all without anything to go by. What a query has too much work for waits for its
+// next.
 void Lookout::examineNear(NearParts& near) {
   const bool is_free = !(contacts_.nearestHeight() < ball_.r) && !contacts_.hasRoom();  // the nearest is the answer
   const bool is_all = !contacts_.hadContacts() || !contacts_.follows() || is_free;
