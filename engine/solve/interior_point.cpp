@@ -10,10 +10,8 @@ namespace {
 
 // S holds 1 / mu: frictionless contacts get this here, Newton's method corrects them
 constexpr double kSmallestFriction = 1e-4;
-// Of the way to the boundary: as far as the step straight to complementarity came, within these. Where always 0.99 of
-// it is gone, one path in twelve ends at the boundary (1,848 problems of ticks that take long, parts in the dish).
-constexpr double kLeastFraction = 0.8, kMostFraction = 0.99;
-constexpr double kNearer = 0.5;  // the gap after kStallSteps, or the path ends nowhere
+constexpr double kStepFraction = 0.99;  // of the way to the boundary
+constexpr double kNearer = 0.5;         // the gap after kStallSteps, or the path ends nowhere
 constexpr int kStallSteps = 5;
 constexpr double kSmallestStep = 1e-9;
 constexpr double kRegularisation = 1e-13;  // of the unit diagonal of W^
@@ -63,7 +61,7 @@ class CentralPath {
     const double predicted = std::min(1.0, direct());
     const double centring = std::clamp(math::cube(std::max(meanGap(predicted), 0.0) / gap), 1e-6, 1.0);
     aimAtCentre((predicted < 0.1 ? std::max(centring, 0.3) : centring) * gap, predicted < 0.1 ? 0 : 1);
-    const double length = std::min(1.0, std::clamp(predicted, kLeastFraction, kMostFraction) * direct());
+    const double length = std::min(1.0, kStepFraction * direct());
     if (!(length > kSmallestStep)) return false;
     for (int row = 0; row < problem_.rowCount(); ++row) {
       x_[row] += length * dx_[row];

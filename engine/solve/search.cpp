@@ -42,7 +42,7 @@ struct Pace {
 };
 constexpr Pace kAtRest{0.2, 5, 3, 0.7, 1e-3}, kInMotion{0.4, 10, 2, 0.5, 3e-4};
 
-// Of what pushes [m/s].
+// The fastest slip of what pushes [m/s].
 double fastestSlip(const ContactProblem& problem, const double* r, const double* u) {
   double fastest2 = 0;
   for (int i = 0; i < problem.contactCount(); ++i) {
