@@ -12,7 +12,7 @@ namespace {
 constexpr double kSmallestFriction = 1e-4;
 constexpr double kStepFraction = 0.99;  // of the way to the boundary
 constexpr double kNearer = 0.5;         // the gap after kStallSteps, or the path ends nowhere
-constexpr int kStallSteps = 5;
+constexpr int kStallSteps = 8;
 constexpr double kSmallestStep = 1e-9;
 constexpr double kRegularisation = 1e-13;  // of the unit diagonal of W^
 constexpr double kSmoothing = 1e-15;       // of |u_T|, relative to the start's z
