@@ -132,8 +132,10 @@ INSTANTIATE_TEST_SUITE_P(
                100, 0.99},
         Family{"cluster", [](RandomScenes& s) { return s.cluster(s.integer(1, 6), s.integer(1, 12), 10, 1, false); },
                500, 0.998},
+        // Of 4,000 29 don't, half of them wedges that no impulse opens: chance, as above.
         Family{"cluster, mu to 3, torsion",
-               [](RandomScenes& s) { return s.cluster(s.integer(1, 6), s.integer(1, 12), 100, 3, true); }, 200, 0.99}));
+               [](RandomScenes& s) { return s.cluster(s.integer(1, 6), s.integer(1, 12), 100, 3, true); }, 2000,
+               0.99}));
 
 // Wherever stops by sweeps end they have brought no energy in, and have taken some away where something closes.
 TEST_P(RandomProblems, AreStoppedBySweepsThatTakeEnergyAway) {
