@@ -5,7 +5,9 @@
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 #include <btBulletDynamicsCommon.h>
+#include <fmt/format.h>
 
+#include "pincer/contact/polytope.h"
 #include "pincer/tasks/judge/peers/adapters.h"
 
 extern btScalar gContactBreakingThreshold;
@@ -15,6 +17,8 @@ namespace pincer::tasks {
 namespace {
 
 constexpr btScalar kBoxMargin = 0.0005, kBreaking = 0.001, kTreeBoxMargin = 0.001;  // [m]
+constexpr btScalar kHullMargin = 1e-5;  // is added to a hull: not so much that it touches from afar [m]
+constexpr int kIterations = 50, kGameIterations = 10;
 
 btVector3 fromEigen(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 btQuaternion fromEigen(const Quat& q) { return {q.x(), q.y(), q.z(), q.w()}; }
@@ -38,6 +42,19 @@ std::unique_ptr<btCollisionShape> shapeOf(const BenchBody& body) {
   if (const auto* capsule = std::get_if<contact::Capsule>(&body.shape)) {
     return std::make_unique<btCapsuleShapeZ>(capsule->radius, 2 * capsule->half_length);
   }
+  if (const auto* cylinder = std::get_if<contact::Cylinder>(&body.shape)) {
+    auto shape =
+        std::make_unique<btCylinderShapeZ>(btVector3(cylinder->radius, cylinder->radius, cylinder->half_length));
+    shape->setMargin(kBoxMargin);
+    return shape;
+  }
+  if (const auto* hull = std::get_if<contact::Convex>(&body.shape)) {
+    auto shape = std::make_unique<btConvexHullShape>();
+    for (const Vec3& corner : hull->hull->vertices()) shape->addPoint(fromEigen(corner), false);
+    shape->setMargin(kHullMargin);
+    shape->recalcLocalAabb();
+    return shape;
+  }
   const Vec3 n = body.X_WB.q * Vec3::UnitZ();
   auto plane = std::make_unique<btStaticPlaneShape>(fromEigen(n), n.dot(body.X_WB.p));
   plane->setMargin(0);
@@ -46,7 +63,7 @@ std::unique_ptr<btCollisionShape> shapeOf(const BenchBody& body) {
 
 class BulletEngine : public BenchEngine {
  public:
-  BulletEngine(const BenchWorld& world, double h, bool dantzig) : world_(world), h_(h) {
+  BulletEngine(const BenchWorld& world, double h, bool dantzig, int iterations) : world_(world), h_(h) {
     tuneGlobals();
     if (dantzig) {
       solver_ = std::make_unique<btMLCPSolver>(&lcp_);
@@ -56,7 +73,7 @@ class BulletEngine : public BenchEngine {
     dynamics_ = std::make_unique<btDiscreteDynamicsWorld>(&dispatcher_, &broad_phase_, solver_.get(), &configuration_);
     dynamics_->setGravity(fromEigen(world.gravity_W));
     btContactSolverInfo& info = dynamics_->getSolverInfo();
-    info.m_numIterations = 50;
+    info.m_numIterations = iterations;
     info.m_splitImpulse = 1;
     info.m_splitImpulsePenetrationThreshold = 0;
     info.m_leastSquaresResidualThreshold = 0;
@@ -101,7 +118,9 @@ class BulletEngine : public BenchEngine {
     btVector3 inertia(0, 0, 0);
     if (moves && !guided) inertia = inertiaOf(body, *shapes_.back());
     btRigidBody::btRigidBodyConstructionInfo info(moves ? body.mass : 0, nullptr, shapes_.back().get(), inertia);
-    if (moves) info.m_startWorldTransform = btTransform(fromEigen(body.X_WB.q), fromEigen(body.X_WB.p));
+    // of planes the place is in the shape
+    if (!std::holds_alternative<contact::HalfSpace>(body.shape))
+      info.m_startWorldTransform = btTransform(fromEigen(body.X_WB.q), fromEigen(body.X_WB.p));
     info.m_friction = std::sqrt(world_.mu);  // Bullet multiplies the two bodies'
     info.m_restitution = std::sqrt(world_.restitution);
     bodies_.push_back(std::make_unique<btRigidBody>(info));
@@ -166,11 +185,21 @@ std::vector<Contestant> bulletEngines() {
                                                  : std::string();
     };
     c.make = [=](const BenchWorld& world, const BenchStep& step) -> std::unique_ptr<BenchEngine> {
-      return std::make_unique<BulletEngine>(world, step.h, dantzig);
+      return std::make_unique<BulletEngine>(world, step.h, dantzig, kIterations);
     };
     settings.push_back(std::move(c));
   }
   return settings;
+}
+
+std::vector<Contestant> familyPeers() {
+  Contestant games;
+  games.engine = "Bullet";
+  games.setting = fmt::format("SI{}", kGameIterations);
+  games.make = [](const BenchWorld& world, const BenchStep& step) -> std::unique_ptr<BenchEngine> {
+    return std::make_unique<BulletEngine>(world, step.h, false, kGameIterations);
+  };
+  return {games};
 }
 
 }  // namespace pincer::tasks

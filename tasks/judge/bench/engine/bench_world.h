@@ -29,7 +29,7 @@ enum class BenchKind {
 };
 
 struct BenchBody {
-  contact::Shape shape = contact::Sphere{1};  // sphere, box, capsule; half-space if fixed
+  contact::Shape shape = contact::Sphere{1};  // sphere, box, capsule; half-space if fixed; families: cylinder, hull
   BenchKind kind = BenchKind::kFree;
   double mass = 0;  // [kg]
   Pose X_WB = {};
@@ -95,6 +95,9 @@ std::unique_ptr<BenchEngine> pincerRobot(const BenchRobot& robot, const BenchSte
 
 // Other engines, each at its documented best (tasks/judge/peers); none in a build without -DPINCER_PEERS=ON.
 std::vector<Contestant> enginePeers();
+
+// Bullet with ten iterations, as games run it, for families of worlds (family_worlds.h); none without -DPINCER_PEERS=ON.
+std::vector<Contestant> familyPeers();
 
 // The force on a guided body along its free axes at time t, where its engine has no spring of its own: the damper as it
 // is at the end of a step of h, so that it is stable.

@@ -30,8 +30,9 @@ Measurement solveLatencyMeasurement(int rounds);
 // Cost of bodies at rest beside one that moves; the least of so many rounds.
 Measurement sleepMeasurement(int rounds);
 
-// Walls of bricks, heaps of balls and hulls, pegs in holes, by sizes; `whole`: stand for a minute, and the large ones.
-std::vector<Measurement> familyMeasurements(bool whole);
+// Walls of bricks, heaps of balls and hulls, pegs in holes, by sizes; `whole`: stand for a minute, and the large ones;
+// `peers`: beside familyPeers().
+std::vector<Measurement> familyMeasurements(bool whole, bool peers);
 
 // The records of a scene: pincer's runs against its bounds, the others' beside
 // them, and the ratios to the best of them.

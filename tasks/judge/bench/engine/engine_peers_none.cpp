@@ -3,5 +3,6 @@
 namespace pincer::tasks {
 
 std::vector<Contestant> enginePeers() { return {}; }
+std::vector<Contestant> familyPeers() { return {}; }
 
 }  // namespace pincer::tasks

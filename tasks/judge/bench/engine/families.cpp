@@ -1,5 +1,5 @@
-// Families of scenes, pincer alone: what they cost tick by tick, how far they are off, whether they come to rest.
-// (Beside peers: walls/3x8 of scenes_resting.cpp.)
+// Families of scenes: what they cost tick by tick, how far they are off, whether they come to rest; what Bullet costs
+// in the same run. (Errors of other engines: walls/3x8 of scenes_resting.cpp.)
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -91,40 +91,95 @@ void addCosts(const FamilyRun& run, std::vector<Record>& records) {
   records.push_back(unbounded("contact velocities off by, largest", run.error, "m/s"));
 }
 
+// Another engine in the same world, tick by tick.
+struct PeerRun {
+  std::string name;
+  std::vector<double> us;             // of each tick, of this thread
+  double moved = 0, moved_after = 0;  // as FamilyRun's [m]
+};
+
+PeerRun runPeer(const Contestant& peer, const FamilyWorld& world, double seconds, MeasureContext& context) {
+  PeerRun run;
+  run.name = peer.name();
+  const double h = world.model.options.h;
+  const int ticks = static_cast<int>(std::lround(seconds / h)), last = static_cast<int>(world.bench.bodies.size()) - 1;
+  const auto engine = peer.make(world.bench, {.h = h});
+  Vec3 start = engine->motion(last).X_WB.p, half = start;
+  for (int n = 0; n < ticks && !context.interrupted(); ++n) {
+    const double before = threadCpuSeconds();
+    engine->step();
+    run.us.push_back(1e6 * (threadCpuSeconds() - before));
+    if (n == ticks / 2) half = engine->motion(last).X_WB.p;
+  }
+  run.moved = (engine->motion(last).X_WB.p - start).norm();
+  run.moved_after = (engine->motion(last).X_WB.p - half).norm();
+  return run;
+}
+
+// pincer's own run, then, if `peers`, the others' beside it: what they cost, and how far their last body went.
+class Family {
+ public:
+  Family(std::function<FamilyWorld()> make, double seconds, bool peers)
+      : make_(std::move(make)), seconds_(seconds), peers_(peers ? familyPeers() : std::vector<Contestant>()) {}
+
+  FamilyRun run(MeasureContext& context) const { return FamilyRunner(make_()).run(seconds_, context); }
+
+  void addPeers(const FamilyRun& own, std::vector<Record>& records, MeasureContext& context) const {
+    for (const Contestant& peer : peers_) {
+      const PeerRun run = runPeer(peer, make_(), seconds_, context);
+      records.push_back(unbounded(run.name + ": tick, mean", meanOf(run.us), "us"));
+      records.push_back(unbounded(run.name + ": tick, longest", shareOf(run.us, 1), "us"));
+      records.push_back(unbounded(run.name + ": the last body moves", 1e6 * run.moved, "um"));
+      records.push_back(unbounded(run.name + ": of that in the second half", 1e6 * run.moved_after, "um"));
+      records.push_back(unbounded("mean over that of " + run.name, meanOf(own.us) / meanOf(run.us), "-"));
+      const auto second_half = [](const std::vector<double>& us) {
+        return meanOf({us.begin() + static_cast<std::ptrdiff_t>(us.size() / 2), us.end()});
+      };
+      records.push_back(unbounded("the same in the second half", second_half(own.us) / second_half(run.us), "-"));
+    }
+  }
+
+ private:
+  std::function<FamilyWorld()> make_;
+  double seconds_;
+  std::vector<Contestant> peers_;
+};
+
 // A wall that stands must come to rest to the bit; unflagged, unless it is laid with gaps and overlaps.
-Measurement wallMeasurement(const std::string& name, const WallSpec& spec, double seconds) {
+Measurement wallMeasurement(const std::string& name, const Family& family, bool is_exact) {
   return {"walls/" + name, [=](MeasureContext& context) {
-            const FamilyRun run = FamilyRunner(wallWorld(spec)).run(seconds, context);
-            const bool is_exact = spec.jitter == 0;  // else its bricks hit each other first
+            const FamilyRun run = family.run(context);
             std::vector<Record> records = {
                 is_exact ? atMost("ticks flagged", run.flagged, "-", 0) : unbounded("ticks flagged", run.flagged, "-"),
                 atMost("top moves in the second half", 1e6 * run.moved_after, "um", 1e-3),
                 exactly("changes in the last ten ticks", !run.rests, "-", 0)};
             addCosts(run, records);
+            family.addPeers(run, records, context);
             return records;
           }};
 }
 
-Measurement hitMeasurement(const std::string& name, const WallSpec& spec, double seconds) {
+Measurement hitMeasurement(const std::string& name, const Family& family) {
   return {"walls/" + name, [=](MeasureContext& context) {
-            const FamilyRun run = FamilyRunner(wallWorld(spec)).run(seconds, context);
+            const FamilyRun run = family.run(context);
             std::vector<Record> records = {
                 unbounded("ticks flagged", run.flagged, "-"),
                 unbounded("tick, longest over the mean", shareOf(run.us, 1) / meanOf(run.us), "-")};
             addCosts(run, records);
+            family.addPeers(run, records, context);
             return records;
           }};
 }
 
-Measurement heapMeasurement(const std::string& name, const std::function<FamilyWorld()>& make, double seconds,
-                            double bound_um) {
+Measurement heapMeasurement(const std::string& name, const Family& family) {
   return {name, [=](MeasureContext& context) {
-            const FamilyRun run = FamilyRunner(make()).run(seconds, context);
+            const FamilyRun run = family.run(context);
             std::vector<Record> records = {
-                atMost("overlap at the end", 1e6 * run.end_overlap, "um", bound_um),
+                atMost("overlap at the end", 1e6 * run.end_overlap, "um", 20),
                 unbounded("overlap, deepest", 1e6 * run.overlap, "um"),
                 unbounded("ticks flagged", 100.0 * run.flagged / static_cast<double>(run.us.size()), "%")};
             addCosts(run, records);
+            family.addPeers(run, records, context);
             return records;
           }};
 }
@@ -150,36 +205,42 @@ Measurement randomPegsMeasurement(int pegs) {
 
 }  // namespace
 
-std::vector<Measurement> familyMeasurements(bool whole) {
+std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
   const double stands = whole ? 60 : 2;
   std::vector<Measurement> all;
+  const auto wall = [&](const std::string& name, const WallSpec& spec, double seconds) {
+    const Family family([=] { return wallWorld(spec); }, seconds, peers);
+    // laid with gaps and overlaps its bricks hit each other first
+    all.push_back(spec.hit_speed > 0 ? hitMeasurement(name, family) : wallMeasurement(name, family, spec.jitter == 0));
+  };
+  const auto heap = [&](const std::string& name, std::function<FamilyWorld()> make, double seconds) {
+    all.push_back(heapMeasurement(name, Family(std::move(make), seconds, peers)));
+  };
   for (const auto& [columns, rows] : {std::pair(1, 1), {1, 5}, {2, 4}, {2, 9}, {3, 8}, {3, 10}, {10, 10}})
-    all.push_back(wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, stands));
-  for (const double mu : {0.3, 0.9})
-    all.push_back(wallMeasurement(fmt::format("5x8-mu-{}", mu), {.columns = 5, .rows = 8, .mu = mu}, stands));
-  all.push_back(wallMeasurement("5x8-heading-30", {.columns = 5, .rows = 8, .heading = 0.52}, stands));
-  all.push_back(wallMeasurement("3x10-jitter-10um", {.columns = 3, .rows = 10, .jitter = 1e-5}, stands));
-  all.push_back(wallMeasurement("3x10-jitter-100um", {.columns = 3, .rows = 10, .jitter = 1e-4}, stands));
-  all.push_back(hitMeasurement("6x6-hit", {.columns = 6, .rows = 6, .hit_speed = 10}, 1));
-  all.push_back(heapMeasurement(
-      "heaps/balls-100", [] { return ballWorld(100, 5, 1); }, 2, 22));
-  all.push_back(heapMeasurement(
-      "hulls/50", [] { return hullWorld(50, 1); }, whole ? 3 : 1.5, 20));
+    wall(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, stands);
+  for (const double mu : {0.3, 0.9}) wall(fmt::format("5x8-mu-{}", mu), {.columns = 5, .rows = 8, .mu = mu}, stands);
+  wall("5x8-heading-30", {.columns = 5, .rows = 8, .heading = 0.52}, stands);
+  wall("3x10-jitter-10um", {.columns = 3, .rows = 10, .jitter = 1e-5}, stands);
+  wall("3x10-jitter-100um", {.columns = 3, .rows = 10, .jitter = 1e-4}, stands);
+  wall("6x6-hit", {.columns = 6, .rows = 6, .hit_speed = 10}, 1);
+  heap(
+      "heaps/balls-100", [] { return ballWorld(100, 5, 1); }, 2);
+  heap(
+      "hulls/50", [] { return hullWorld(50, 1); }, whole ? 3 : 1.5);
   for (const double play : {5e-5, 1e-4, 2e-4})
-    all.push_back(heapMeasurement(
-        fmt::format("pegs/play-{}um", 1e6 * play), [=] { return pegWorld(play, 8e-3); }, 0.5, 20));
+    heap(
+        fmt::format("pegs/play-{}um", 1e6 * play), [=] { return pegWorld(play, 8e-3); }, 0.5);
   all.push_back(randomPegsMeasurement(whole ? 400 : 40));
   if (!whole) return all;
   for (const auto& [columns, rows] : {std::pair(20, 6), {20, 10}, {40, 20}})
-    all.push_back(wallMeasurement(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows},
-                                  columns * rows > 400 ? 10 : stands));
-  all.push_back(wallMeasurement("20x10-jitter-10um", {.columns = 20, .rows = 10, .jitter = 1e-5}, 10));
-  all.push_back(hitMeasurement("20x10-hit", {.columns = 20, .rows = 10, .hit_speed = 10}, 1));
-  all.push_back(wallMeasurement("3x8-masses-1e3", {.columns = 3, .rows = 8, .mass_ratio = 1e3}, 10));
-  all.push_back(heapMeasurement(
-      "heaps/balls-400", [] { return ballWorld(400, 8, 1); }, 3, 22));
-  all.push_back(heapMeasurement(
-      "hulls/100", [] { return hullWorld(100, 1); }, 3, 20));
+    wall(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, columns * rows > 400 ? 10 : stands);
+  wall("20x10-jitter-10um", {.columns = 20, .rows = 10, .jitter = 1e-5}, 10);
+  wall("20x10-hit", {.columns = 20, .rows = 10, .hit_speed = 10}, 1);
+  wall("3x8-masses-1e3", {.columns = 3, .rows = 8, .mass_ratio = 1e3}, 10);
+  heap(
+      "heaps/balls-400", [] { return ballWorld(400, 8, 1); }, 3);
+  heap(
+      "hulls/100", [] { return hullWorld(100, 1); }, 3);
   return all;
 }
 

@@ -44,35 +44,51 @@ engine::Material rough(double mu) {
 
 class WorldMaker {
  public:
-  WorldMaker(double mu, bool sleep) : material_(rough(mu)) {
+  WorldMaker(double mu, bool sleep) {
     options_.sleep = sleep;
+    bench_.mu = mu;
     add("floor", contact::HalfSpace{}, 0, Vec3::Zero());
   }
   // Of no mass: it never moves.
   void add(const std::string& name, const contact::Shape& shape, double mass, const Vec3& p,
            const Quat& q = Quat::Identity(), const Vec3& v = Vec3::Zero()) {
-    bodies_.push_back({name, shape, mass > 0, mass, material_});
-    starts_.push_back({{q, p}, v, Vec3::Zero()});
+    names_.push_back(name);
+    bench_.bodies.push_back({shape, mass > 0 ? BenchKind::kFree : BenchKind::kFixed, mass, {q, p}, v});
   }
   // Four walls around the z axis, `half` from it.
   void addCrate(double half) {
     for (const Vec3& n : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)})
-      add(fmt::format("side{}", bodies_.size()), contact::HalfSpace{}, 0, -half * n,
+      add(fmt::format("side{}", names_.size()), contact::HalfSpace{}, 0, -half * n,
           Quat::FromTwoVectors(Vec3::UnitZ(), n));
   }
-  FamilyWorld make() const {
+  FamilyWorld make() {
     engine::WorldBuilder builder(options_);
-    for (const engine::BodySpec& body : bodies_) builder.addBody(body);
+    std::vector<engine::BodyStart> starts;
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const BenchBody& body = bench_.bodies[i];
+      builder.addBody({names_[i], body.shape, body.mass > 0, body.mass, rough(bench_.mu)});
+      starts.push_back({body.X_WB, body.v_W, body.w_W});
+    }
     engine::WorldModel model = builder.build();
-    engine::WorldState state = engine::makeState(model, starts_, {});
-    return {std::move(model), std::move(state)};
+    engine::WorldState state = engine::makeState(model, starts, {});
+    for (std::size_t i = 0; i < names_.size(); ++i) centre(names_[i], model.bodies[i].X_BI.p, bench_.bodies[i]);
+    return {std::move(model), std::move(state), std::move(bench_)};
   }
 
  private:
-  engine::Material material_;
+  // A hull's frame at its centre of mass p_B.
+  static void centre(const std::string& name, const Vec3& p_B, BenchBody& body) {
+    const auto* hull = std::get_if<contact::Convex>(&body.shape);
+    if (!hull) return;
+    std::vector<Vec3> corners = hull->hull->vertices();
+    for (Vec3& corner : corners) corner -= p_B;
+    body.shape = contact::Convex{contact::Polytope::hullOf(corners, name)};
+    body.X_WB.p = body.X_WB * p_B;
+  }
+
   engine::WorldOptions options_;
-  std::vector<engine::BodySpec> bodies_;
-  std::vector<engine::BodyStart> starts_;
+  std::vector<std::string> names_;
+  BenchWorld bench_;
 };
 
 }  // namespace

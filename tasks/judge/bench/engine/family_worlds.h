@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "pincer/engine/step.h"
+#include "pincer/tasks/judge/bench/engine/bench_world.h"
 
 namespace pincer::tasks {
 
 struct FamilyWorld {
   engine::WorldModel model;
   engine::WorldState state;
+  BenchWorld bench;  // the same, as other engines are told it; hulls about their centres of mass
 };
 
 // Bricks of 40 x 20 x 20 mm and 50 g, every other row shifted by a quarter of a brick, 1 mm apart along a row.
