@@ -84,7 +84,6 @@ struct ContactProblem {
   bool calm = false;    // nothing of it moves faster than rest (restErrorOf)
   std::span<const RoundContact> round = {};  // of each contact; empty where nobody looked
   std::span<const int> first_side = {};      // size n + 1; empty where every contact has two sides
-  bool declined_grip = false;                // grip_problem.h found no answer, nor would pad_problem.h
   double noise = kGapNoise;                  // what round-off asks for in every tick [m/s]
 
   int contactCount() const { return static_cast<int>(mu.size()); }

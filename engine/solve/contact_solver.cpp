@@ -5,7 +5,6 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/cone.h"
 #include "pincer/engine/solve/few_contacts.h"
-#include "pincer/engine/solve/pad_problem.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/search.h"
 #include "pincer/engine/solve/small_problem.h"
@@ -39,7 +38,6 @@ bool removeAddedEnergy(const ContactProblem& problem, double* r, const double* u
 
 void solveFew(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
               SolveResult& result) {
-  if (!problem.declined_grip && solvePadProblem(problem, options, scratch, r, u, result)) return;
   weighContacts(problem, scratch);
   const ContactError start = errorOf(problem, r, scratch, u);
   result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};

@@ -352,9 +352,17 @@ bool solveGripProblem(const GripProblem& grip, const ContactProblem& problem, co
                       SolverScratch& scratch, double* r, double* u, SolveResult& result) {
   PINCER_ASSERT(grip.contacts == problem.contactCount() && problem.rowCount() == kGripRows * grip.contacts);
   Grip held(grip, problem, r);
-  if (!holdNearest(problem, options, held, scratch, result)) return false;
-  held.write(r, u);
-  return true;
+  const ContactError start = held.error();
+  result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};
+  bool is_solved = isGoodStart(problem, options, start, held.speed());
+  if (!is_solved) {
+    const std::int64_t operations_left = scratch.operations_left;
+    result.method = SolveMethod::kNewton;
+    is_solved = holdNearest(problem, options, held, scratch, result);
+    if (!is_solved) scratch.operations_left = operations_left;
+  }
+  if (is_solved) held.write(r, u);
+  return is_solved;
 }
 
 }  // namespace pincer::engine

@@ -1,6 +1,6 @@
-// grip_problem: pad_problem.h's step for the grip that nearly all are: one free body, up to four points that don't turn
-// and what doesn't move. Blocks of A aren't needed there. Contacts of a face share their axes R and a point, and act
-// on the body by the sum of their impulses and the moment of that:
+// grip_problem: stuck_contacts.h's step for the grip that nearly all are: one free body, up to four points that don't
+// turn and what doesn't move. Blocks of A aren't needed there. Contacts of a face share their axes R and a point, and
+// act on the body by the sum of their impulses and the moment of that:
 //
 //   A_i = s R^T (1/sqrt(m),  -[arm_i]x F,  -E)          y = A^T r:  s R sum r_i,  s R sum (R^T arm_i) x r_i
 //   N = A^T A + ridge I,  points eliminated (P = n E^2 + ridge I, rho = ridge / P):
@@ -37,8 +37,10 @@ struct GripProblem {
   int points = 0, contacts = 0;
 };
 
-// As solvePadProblem: true if the warm start or a few steps from there solved `problem`, the same contacts as
-// `grip`; its sides and movers aren't read.
+// True if the warm start or a few steps from there solved `problem`, the same contacts as `grip`: then r, u and
+// `result` are those of solveContacts, by the rules of stuck_contacts.h. Else r is as before, and the other two aren't
+// to be read. The problem's sides and movers aren't read.
+//   r  warm start, in the cones
 bool solveGripProblem(const GripProblem& grip, const ContactProblem& problem, const SolverOptions& options,
                       SolverScratch& scratch, double* r, double* u, SolveResult& result);
 

@@ -161,18 +161,12 @@ int solvePressed(const double* W, int stride, const double* q, double mu, double
 }  // namespace
 
 bool isIsotropic(const double* W, int stride) {
-  constexpr double kAlike = 1e-12;  // of W: its round-off, far below any tolerance
-  const double small = kAlike * W[0];
+  const double small = kBlockRoundOff * W[0];
   return W[0] > 0 && W[kNormalRow * (stride + 1)] > 0 && std::abs(W[1]) <= small && std::abs(W[kNormalRow]) <= small &&
          std::abs(W[stride + kNormalRow]) <= small && std::abs(W[0] - W[stride + 1]) <= small;
 }
 
-int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r) {
-  double alpha = 0;
-  return followOneContact(W, stride, q, rows, mu, r, alpha);
-}
-
-int followOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r, double& alpha) {
+int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r, double& alpha) {
   std::fill(r, r + rows, 0.0);
   if (!(q[kNormalRow] < 0)) return 0;
   if (mu == 0) {

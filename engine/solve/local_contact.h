@@ -18,6 +18,8 @@
 
 namespace pincer::engine {
 
+constexpr double kBlockRoundOff = 1e-12;  // of A and W: their round-off, far below any tolerance
+
 // True if, of three rows, all directions along the surface are alike and the normal is apart from them.
 bool isIsotropic(const double* W, int stride);
 
@@ -39,10 +41,12 @@ bool isIsotropic(const double* W, int stride);
 // r = the solution for the `rows` x `rows` block W (column-major with column stride `stride`) and q; rows is 3, 4 or 6.
 // Where W makes several solutions possible (large mu W_nT), one of them. r is in the cone to round-off.
 // Returns how many steps the search for alpha took.
-int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r);
-
-// The same for one of a row of problems that hardly differ, as of a contact from sweep to sweep: by one step from
-// `alpha` [kg^-1], that of the problem before; 0: of none, or it didn't slide. alpha becomes this problem's.
-int followOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r, double& alpha);
+//   alpha  where problems that hardly differ follow each other, as those of a contact from sweep to sweep: that of the
+//          one before, one step from here [kg^-1]; 0: of none, or it didn't slide. Becomes this one's.
+int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r, double& alpha);
+inline int solveOneContact(const double* W, int stride, const double* q, int rows, double mu, double* r) {
+  double alpha = 0;
+  return solveOneContact(W, stride, q, rows, mu, r, alpha);
+}
 
 }  // namespace pincer::engine

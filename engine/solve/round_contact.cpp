@@ -2,12 +2,11 @@
 
 #include <cmath>
 
+#include "pincer/engine/solve/local_contact.h"
 #include "pincer/engine/solve/mobility.h"
 
 namespace pincer::engine {
 namespace {
-
-constexpr double kRound = 1e-12;  // of A: its round-off, far below any tolerance
 
 void crossProduct(const double* a, const double* b, double* out) {
   out[0] = a[1] * b[2] - a[2] * b[1];
@@ -28,7 +27,7 @@ bool takeSide(const ContactSide& side, const double (&cross)[2][3], int place, R
   c.linear[place] = linear;
   c.turn[place] = turn;
   c.mover[place] = side.mover;
-  return error <= kRound * (std::abs(linear) + std::abs(turn));
+  return error <= kBlockRoundOff * (std::abs(linear) + std::abs(turn));
 }
 
 bool makeRound(std::span<const ContactSide> sides, RoundContact& c) {
@@ -38,7 +37,7 @@ bool makeRound(std::span<const ContactSide> sides, RoundContact& c) {
   if (moving.mover < 0) return false;
   const double* const n = moving.A[kNormalRow];
   // its line misses the centre: so do most that aren't round
-  if (dot3(n + 3, n + 3) > kRound * dot3(n, n)) return false;
+  if (dot3(n + 3, n + 3) > kBlockRoundOff * dot3(n, n)) return false;
   const double inverse = 1 / std::sqrt(dot3(moving.A[kNormalRow], moving.A[kNormalRow]));
   for (int k = 0; k < kTorsionRow; ++k) {
     for (int j = 0; j < 3; ++j) c.R[k][j] = inverse * moving.A[k][j];

@@ -8,6 +8,7 @@
 #include "pincer/engine/solve/mover_normals.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/squeeze.h"
+#include "pincer/engine/solve/stuck_steps.h"
 
 namespace pincer::engine {
 namespace {
@@ -18,9 +19,12 @@ constexpr double kPadGive = 1e-5;
 // Steps with a set of contacts that hold.
 class StuckSolve {
  public:
-  StuckSolve(const ContactProblem& problem, const StuckMovers& movers, const SolverScratch& scratch, double* r,
-             double* u)
+  StuckSolve(const ContactProblem& problem, const StuckMovers& movers, SolverScratch& scratch, double* r, double* u)
       : problem_(problem), movers_(movers), scratch_(scratch), r_(r), u_(u) {}
+
+  // u and the error of r.
+  ContactError error() { return errorOf(problem_, r_, scratch_, u_); }
+  bool maySqueeze() const { return isSqueezed(problem_, scratch_.weight, r_); }
 
   bool holds(int i) const { return holds_[i]; }
   // Contacts that push.
@@ -88,7 +92,7 @@ class StuckSolve {
 
   const ContactProblem& problem_;
   const StuckMovers& movers_;
-  const SolverScratch& scratch_;
+  SolverScratch& scratch_;
   double *r_, *u_;
   bool holds_[kFewContacts];
 };
@@ -101,16 +105,7 @@ class StuckAnswer {
       : problem_(problem), options_(options), scratch_(scratch), r_(r), u_(u), solve_(problem, movers, scratch, r, u) {}
 
   // From the warm start.
-  bool nearest(SolveResult& result) {
-    const bool is_close = result.residual <= options_.tolerance;
-    const double enough = (is_close ? kStrictness : 0.5) * options_.tolerance;
-    solve_.holdWhatPushes();
-    while (result.iterations < kMostStuckSteps && mayStep() && solve_.allStayAsTheyAre() && solve_.step() &&
-           solve_.holdsWith(kStuckFrictionUsed)) {
-      if (isSolved(enough, result)) return true;
-    }
-    return false;
-  }
+  bool nearest(SolveResult& result) { return holdNearest(problem_, options_, solve_, scratch_, result); }
 
   // From none: of all impulses with which everything sticks, the least.
   bool least(SolveResult& result) {
@@ -123,7 +118,8 @@ class StuckAnswer {
         continue;
       }
       if (!solve_.holdsWith(1)) return false;
-      if (isSolved(0.5 * options_.tolerance, result)) return true;
+      ++result.iterations;
+      if (isEnough(solve_.error(), result)) return true;
     }
     return result.iterations == kMostStuckSteps && giveWay(result);
   }
@@ -132,17 +128,12 @@ class StuckAnswer {
   bool mayStep() { return spend(stuckOperations(problem_), scratch_); }
   void startFromNone() {
     std::fill(r_, r_ + problem_.rowCount(), 0.0);
-    errorOf(problem_, r_, scratch_, u_);
+    solve_.error();
   }
-  bool isSolved(double enough, SolveResult& result) {
-    const ContactError error = errorOf(problem_, r_, scratch_, u_);
-    ++result.iterations;
-    return isEnough(error, enough, result);
-  }
-  bool isEnough(const ContactError& error, double enough, SolveResult& result) const {
+  bool isEnough(const ContactError& error, SolveResult& result) const {
     result.residual = error.residual;
     result.error = error.speed;
-    return error.residual <= enough && !isSqueezed(problem_, scratch_.weight, r_);
+    return error.residual <= 0.5 * options_.tolerance && !solve_.maySqueeze();
   }
 
   // No impulses take away what is left of the velocities of contacts that hold: they
@@ -162,7 +153,7 @@ class StuckAnswer {
                 w * r_[first + kNormalRow]);
     }
     result.give = most;
-    return most <= kPadGive && isEnough(worst.relativeTo(referenceSpeed(problem_)), 0.5 * options_.tolerance, result);
+    return most <= kPadGive && isEnough(worst.relativeTo(referenceSpeed(problem_)), result);
   }
 
   const ContactProblem& problem_;

@@ -133,7 +133,7 @@ template <class Rows>
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) u[k] -= W[rows * l + k] * r_i[l];
   }
-  slide_steps_ += followOneContact(W, rows, u, rows, mu, r, terms[1]);
+  slide_steps_ += solveOneContact(W, rows, u, rows, mu, r, terms[1]);
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) u[k] += W[rows * l + k] * r[l];
   }

@@ -258,9 +258,7 @@ class IslandSolve {
 
   bool solveAsGrip(const SolverOptions& options) {
     projectOntoCones(problem_, island_.r);
-    const bool is_solved = solveGripProblem(grip_, problem_, options, memory_, island_.r, island_.u, island_.result);
-    problem_.declined_grip = !is_solved;
-    return is_solved;
+    return solveGripProblem(grip_, problem_, options, memory_, island_.r, island_.u, island_.result);
   }
 
   void solveAgain(const SolverOptions& options) {

@@ -3,7 +3,6 @@
 
 #include <Eigen/Dense>
 
-#include "pincer/engine/solve/pad_problem.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/stuck_contacts.h"
 #include "pincer/tests/support/contact_problems.h"
@@ -141,83 +140,6 @@ TEST(StuckContacts, LeaveWhatSlidesAsItWas) {
   EXPECT_FALSE(trial.solved);
   EXPECT_EQ(trial.r, start);
   EXPECT_LT((trial.u - p.W * start - p.q).norm(), 1e-14 * p.q.norm()) << "velocities of the warm start";
-}
-
-StuckTrial solvePads(tests::OwnedContactProblem& p, const VectorXd& start) {
-  const ContactProblem problem = p.view();
-  SolverScratch scratch(static_cast<int>(p.mu.size()), p.movers);
-  StuckTrial trial{start, start, {}, false};
-  trial.solved = solvePadProblem(problem, {}, scratch, trial.r.data(), trial.u.data(), trial.result);
-  return trial;
-}
-
-void expectTheSame(const StuckTrial& pads, const StuckTrial& stuck) {
-  ASSERT_TRUE(pads.solved);
-  EXPECT_LT((pads.r - stuck.r).norm(), 1e-9 * stuck.r.norm());
-  EXPECT_LT((pads.u - stuck.u).norm(), 1e-9 * (stuck.u.norm() + stuck.r.norm()));
-  EXPECT_EQ(pads.result.iterations, stuck.result.iterations);
-  EXPECT_EQ(pads.result.method, stuck.result.method);
-}
-
-TEST(PadProblem, SaysWhatAnyStuckContactsAreSolvedTo) {
-  tests::RandomScenes random(11);
-  for (const int fingers : {1, 2, 3, 4}) {
-    for (const double pad_mass : {1e-3, 0.1, 3.0}) {
-      SCOPED_TRACE(testing::Message() << fingers << " fingers of " << pad_mass << " kg");
-      tests::OwnedContactProblem p = heldByPads(fingers, pad_mass, true, random);
-      VectorXd start = squeeze(p, 10);
-      p.q -= p.W * start;
-      expectTheSame(solvePads(p, start), solveStuck(p, start));
-      for (const int corner : {0, 3}) {  // two corners are off
-        start[3 * corner + kNormalRow] = 0;
-        p.q[3 * corner + kNormalRow] += 1e3;
-      }
-      const StuckTrial stuck = solveStuck(p, start);
-      if (stuck.solved) expectTheSame(solvePads(p, start), stuck);
-    }
-  }
-}
-
-// A corner more and the groups of the others begin elsewhere in memory: what lies between them counts as nothing.
-TEST(PadProblem, TakesAnyNumberOfCornersOfAPoint) {
-  tests::RandomScenes random(12);
-  for (std::size_t dropped = 0; dropped < 8; ++dropped) {
-    tests::OwnedContactProblem p = heldByPads(2, 0.1, true, random);
-    p.sides.erase(p.sides.begin() + static_cast<std::ptrdiff_t>(dropped));
-    p.mu.pop_back();
-    p.first_row.pop_back();
-    const auto after = static_cast<Eigen::Index>(3 * dropped);
-    p.q.segment(after, 21 - after) = VectorXd(p.q.tail(21 - after));
-    p.q.conservativeResize(21);
-    p.W = factorOf(p) * factorOf(p).transpose();
-    const VectorXd start = squeeze(p, 10);
-    p.q -= p.W * start;
-    expectTheSame(solvePads(p, start), solveStuck(p, start));
-  }
-}
-
-TEST(PadProblem, LeavesAnExactWarmStartToTheBit) {
-  tests::RandomScenes random(13);
-  tests::OwnedContactProblem p = heldByPads(2, 0.1, true, random);
-  const VectorXd start = squeeze(p, 10);
-  p.q = -(p.W * start);
-  const StuckTrial trial = solvePads(p, start);
-  ASSERT_TRUE(trial.solved);
-  EXPECT_EQ(trial.result.method, SolveMethod::kWarmStart);
-  EXPECT_EQ(trial.r, start);
-}
-
-TEST(PadProblem, DeclinesWhatSlidesAndOtherKinds) {
-  tests::RandomScenes random(14);
-  tests::OwnedContactProblem slides = heldByPads(2, 0.1, true, random);
-  slides.q.array() += 10;
-  const VectorXd start = squeeze(slides, 1e-3);
-  const StuckTrial trial = solvePads(slides, start);
-  EXPECT_FALSE(trial.solved);
-  EXPECT_EQ(trial.r, start);
-  tests::OwnedContactProblem bodies = heldByPads(2, 0.1, false, random), many = heldByPads(5, 0.1, true, random);
-  EXPECT_FALSE(solvePads(bodies, squeeze(bodies, 10)).solved) << "pads that are bodies";
-  EXPECT_FALSE(solvePads(many, squeeze(many, 10)).solved) << "five fingers";
 }
 
 }  // namespace
