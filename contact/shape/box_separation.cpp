@@ -28,7 +28,7 @@ Separation separateBoxes(const PosedSolid& a, const PosedSolid& b) {
     for (int j = 0; j < 3; ++j) {
       const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
       const double sine2 = C(i1, j) * C(i1, j) + C(i2, j) * C(i2, j);
-      if (!(sine2 > kParallelEdges * kParallelEdges)) continue;
+      if (!(sine2 > kNoAngle * kNoAngle)) continue;
       const double along = C(i1, j) * d_a[i2] - C(i2, j) * d_a[i1];  // (a_i x b_j) . d
       const double reach =
           half_a[i1] * absC(i2, j) + half_a[i2] * absC(i1, j) + half_b[j1] * absC(i, j2) + half_b[j2] * absC(i, j1);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/point_choice.h"
 #include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
@@ -11,13 +12,12 @@ namespace {
 
 // The kept points of one group, and the sides of their outline seen along the first one's normal.
 struct Group {
-  static constexpr int kMost = 4;  // points, as point_choice.h keeps of a face
   struct Side {
     Vec3 right, from;
   };
-  std::array<const PairPoint*, kMost> kept{};
+  std::array<const PairPoint*, kMaxChosen> kept{};
   int count = 0;
-  std::array<Side, kMost*(kMost - 1)> sides;
+  std::array<Side, kMaxChosen*(kMaxChosen - 1)> sides;
   int side_count = 0;
 
   const Vec3& normal() const { return kept[0]->n_W; }
@@ -25,7 +25,7 @@ struct Group {
   Vec3 flat(const Vec3& v) const { return v - normal().dot(v) * normal(); }
 
   void add(const PairPoint& p) {
-    PINCER_ASSERT(count < kMost);
+    PINCER_ASSERT(count < kMaxChosen);
     kept[static_cast<std::size_t>(count++)] = &p;
     side_count = 0;
     for (int i = 0; i < count; ++i) {
@@ -136,7 +136,7 @@ FoundPoints ContactCandidates::keepBest() {
     more = false;
     for (int g = 0; g < group_count && out.count < kMaxPairPoints; ++g) {
       Group& group = groups[static_cast<std::size_t>(g)];
-      const int next = group.count < Group::kMost ? furthestOf(g) : -1;
+      const int next = group.count < kMaxChosen ? furthestOf(g) : -1;
       if (next < 0) continue;
       keep(next, group);
       more = true;

@@ -6,17 +6,17 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
 
-constexpr double kStanding = 1e-6;  // [rad], see the header
-constexpr double kInset = 0.05;     // of the least half width: how far insetOf moves the faces
+constexpr double kInset = 0.05;  // of the least half width: how far insetOf moves the faces
 constexpr double kCos = 0.92387953251128674, kSin = 0.38268343236508977;  // of 2 pi / kRimCorners
 
 Vec2 unitOr(const Vec2& v, const Vec2& otherwise) {
   const double length = v.norm();
-  return length > kStanding ? Vec2(v / length) : otherwise;
+  return length > kNoAngle ? Vec2(v / length) : otherwise;
 }
 
 // Furthest point of the disc of radius r along d; its centre where d has no direction.
@@ -41,7 +41,7 @@ Mat3 bend(const Solid&, const Vec3&) {
 Mat3 rimBend(double radius, const Vec3& d) {
   const double length = d.head<2>().norm();
   Mat3 H = Mat3::Zero();
-  if (!(length > kStanding)) return H;
+  if (!(length > kNoAngle)) return H;
   const Vec2 across(-d.y() / length, d.x() / length);
   H.topLeftCorner<2, 2>() = radius / length * across * across.transpose();
   return H;
@@ -268,7 +268,6 @@ const Polytope::Face* faceAlong(const Polytope& hull, std::span<const int> edges
 // The face around the extreme vertex that faces d most; but where d is across an edge, one of the two that the edge
 // joins.
 void facet(const Convex& c, const Vec3& d, Facet& f) {
-  constexpr double kAcross = 1e-6;  // cosine
   const Polytope& hull = *c.hull;
   const int vertex = hull.extremeVertex(d);
   const double length = d.norm();
@@ -277,7 +276,7 @@ void facet(const Convex& c, const Vec3& d, Facet& f) {
   const auto edgeOf = [&](int e) -> const Polytope::Edge& { return hull.edges()[static_cast<std::size_t>(e)]; };
   const auto isAcross = [&](const Polytope::Edge& edge) {
     const Vec3 along = vertexOf(c, edge.to) - vertexOf(c, edge.from);
-    return std::abs(d.dot(along)) < kAcross * length * along.norm();
+    return std::abs(d.dot(along)) < kNoAngle * length * along.norm();
   };
   constexpr std::size_t kMostKnown = 8;  // of edges at a vertex; asked again beyond
   std::array<bool, kMostKnown> across{};
@@ -371,7 +370,7 @@ void addRimCorner(const Vec2& towards, Facet& f) {
     const FacetCorner& next = f.corners[static_cast<std::size_t>((i + 1) % f.count)];
     const Vec2 p = from.p.head<2>(), q = next.p.head<2>(), side = q - p;
     if (!(up * cross(side, rim - p) < 0)) continue;
-    const bool is_there = (rim - p).norm() < kStanding * f.rim_radius || (rim - q).norm() < kStanding * f.rim_radius;
+    const bool is_there = (rim - p).norm() < kNoAngle * f.rim_radius || (rim - q).norm() < kNoAngle * f.rim_radius;
     if (f.isStraight(i) || is_there || !(up * cross(side, towards - p) < 0)) return;
     const auto at = f.corners.begin() + i + 1;
     std::copy_backward(at, f.corners.begin() + f.count, f.corners.begin() + f.count + 1);

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "pincer/contact/shape/tolerances.h"
+
 namespace pincer::contact {
 namespace {
 
-constexpr int kMostQueries = 24;       // of the surface, for one descent
 constexpr double kCoreAtRest = 1e-10;  // of the finger's size: the core's deepest place moves no further
 // of the rounding: the surface's shading and its shape disagree about where to go on
 constexpr double kShortestStep = 0.01;

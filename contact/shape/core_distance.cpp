@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
@@ -97,8 +98,7 @@ class DifferenceSimplex {
 // `furthest`: the point of A - B that is furthest against a direction.
 template <class Furthest>
 CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, const CoreAccuracy& accuracy) {
-  constexpr int kMostSteps = 60;       // of GJK
-  constexpr double kTouching = 1e-13;  // of the size: round-off of a difference of two points
+  constexpr int kMostSteps = 60;  // of GJK
   DifferenceSimplex simplex;
   Vec3 v = start;
   double length2 = std::numeric_limits<double>::infinity();
@@ -114,7 +114,7 @@ CoreDistance nearestToOrigin(Furthest furthest, const Vec3& start, double size, 
     simplex.add(w);
     const Vec3 next = simplex.nearest();
     const double next2 = next.squaredNorm();
-    if (simplex.holdsOrigin() || next2 <= kTouching * kTouching * size * size) return {};
+    if (simplex.holdsOrigin() || next2 <= kGapRounding * kGapRounding * size * size) return {};
     if (!(next2 < length2)) break;
     v = next;
     length2 = next2;

@@ -1,12 +1,11 @@
 #include "pincer/contact/shape/extreme_points.h"
 
 #include "pincer/contact/polytope.h"
+#include "pincer/contact/shape/tolerances.h"
 #include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
 namespace {
-
-constexpr double kUpright = 1e-6;  // [rad], see the header
 
 ExtremePoints stored(const ExtremePointStore& store, double rounding = 0) {
   const auto count = static_cast<std::size_t>(store.count);
@@ -15,7 +14,7 @@ ExtremePoints stored(const ExtremePointStore& store, double rounding = 0) {
 
 Vec2 firstOfRim(const Vec2& steepest) {
   const double rate = steepest.norm();
-  return rate > kUpright ? Vec2(steepest / rate) : Vec2::UnitX();
+  return rate > kNoAngle ? Vec2(steepest / rate) : Vec2::UnitX();
 }
 
 // Four points of the rim at height z, but none with x > x_most.

@@ -5,13 +5,11 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/shape/facet_overlap.h"
+#include "pincer/contact/shape/point_choice.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
-
-// of a face that lies over another with all of them; of more there is a choice to be made
-constexpr int kMostCorners = 4;
-constexpr double kLowestRounding = 1e-13;  // of the size: round-off, as separation.cpp has it
 
 // One solid over the face `base` of the other: what of it faces that, seen in the base's frame.
 class OverFace {
@@ -32,7 +30,7 @@ class OverFace {
       lowest_corner = std::min(lowest_corner, heights_[at]);
     }
     // A face with all of its corners holds its lowest point.
-    const bool is_whole = over_.count > 2 && over_.count <= kMostCorners && !(over_.rim_radius > 0);
+    const bool is_whole = over_.count > 2 && over_.count <= kMaxChosen && !(over_.rim_radius > 0);
     lowest_ = is_whole ? lowest_corner : base.n.dot(seen(over_solid.place(supportOf(over_solid.shape, ahead)))) - plane;
     noteInside();
   }
@@ -40,7 +38,7 @@ class OverFace {
   // A lowest point lies over the base; or would, if the two facets share a place.
   bool isNearest(double size) const { return isLowest(lowest_inside_, size); }
   bool isFlush(double size) const { return isLowest(highest_, size); }
-  bool isWithin() const { return all_inside_ && over_.count > 2 && over_.count <= kMostCorners; }
+  bool isWithin() const { return all_inside_ && over_.count > 2 && over_.count <= kMaxChosen; }
   const Vec3& normal() const { return n_; }  // out of the base
   double lowest() const { return lowest_; }  // over the base [m]
 
@@ -60,7 +58,7 @@ class OverFace {
   }
 
  private:
-  bool isLowest(double height, double size) const { return lowest_ > 0 && height - lowest_ <= kLowestRounding * size; }
+  bool isLowest(double height, double size) const { return lowest_ > 0 && height - lowest_ <= kGapRounding * size; }
 
   // In the base's frame.
   Vec3 seen(const Vec3& p) const { return base_solid_.inwards(p - base_solid_.p); }

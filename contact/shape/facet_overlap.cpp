@@ -10,8 +10,6 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kSame = 1e-6;  // of the size, see the header
-
 enum : std::uint32_t { kCornerOfA = 0, kCornerOfB = 1, kCrossing = 2, kSupports = 3 };
 std::uint32_t featureOf(std::uint32_t kind, std::uint32_t a, std::uint32_t b) { return kind << 28 | a << 14 | b; }
 
@@ -80,7 +78,7 @@ void flatten(const PosedSolid& solid, const Facet& facet, double sign, const Vie
   FlatCorner end = named(1, 0);
   end.x = view.across(placeOf(1));
   const Vec2 chord = end.x - out.x0;
-  if (!(chord.norm() > kSame * size)) return;
+  if (!(chord.norm() > kSamePlace * size)) return;
   out.slope = (view.along(placeOf(1)) - out.z0) / chord.squaredNorm() * chord;
   out.corners[1] = end;
   out.count = 2;
@@ -191,7 +189,7 @@ void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance,
   const Vec2 a0 = fa.corner(0).x, b0 = fb.corner(0).x;
   const Vec2 a = fa.corner(1).x - a0, b = fb.corner(1).x - b0;
   const double sine = cross(a, b), lengths = a.norm() * b.norm();
-  if (std::abs(sine) > kParallelEdges * lengths) {
+  if (std::abs(sine) > kNoAngle * lengths) {
     const double s = cross(b0 - a0, b) / sine, t = cross(b0 - a0, a) / sine;
     const double slack_a = tolerance / a.norm(), slack_b = tolerance / b.norm();
     if (s >= -slack_a && s <= 1 + slack_a && t >= -slack_b && t <= 1 + slack_b)
@@ -319,12 +317,13 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   Shared shared;
   Heights heights;
   bool found = false, exactly = false;
-  for (double slack = kSame; slack < 2e-4 && !found; slack *= 10) {  // the direction may be right to round-off only
+  for (double slack = kSamePlace; slack < 2e-4 && !found;
+       slack *= 10) {  // the direction may be right to round-off only
     shared.count = 0;
     share(fa, fb, slack * size, shared);
     heights.measure(shared, surfaces);
     found = heights.least_gap < least + slack * size;
-    exactly = exactly || (found && slack == kSame);
+    exactly = exactly || (found && slack == kSamePlace);
   }
   if (!found) {
     shared.count = 0;

@@ -12,7 +12,7 @@
 // near the ends of what they share, there where one is as steep as the other. The end of a cylinder is a polygon of 16
 // corners, with more where the other body comes near the rim between two of them. Of more than four points up to four
 // are kept (point_choice.h). A point's feature is made of the names of corners and edges (convex_features.h), so it
-// stays while these touch. A corner of A counts as within B's facet up to kSame of the size outside of it: so the
+// stays while these touch. A corner of A counts as within B's facet up to kSamePlace of the size outside of it: so the
 // corners of equal boxes on each other keep their names.
 #pragma once
 #include "pincer/contact/pair_query.h"

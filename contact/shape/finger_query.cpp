@@ -7,6 +7,7 @@
 #include "pincer/contact/shape/closed_forms.h"
 #include "pincer/contact/shape/core_descent.h"
 #include "pincer/contact/shape/pad_query.h"
+#include "pincer/contact/shape/tolerances.h"
 #include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
@@ -49,10 +50,9 @@ void add(const SurfaceContact& point, std::uint32_t ball, FingerContacts& out) {
 // A capsule's ends that come within the margin, where they aren't the deepest place `c_F` themselves.
 void addEnds(const Shape& shape, const CapsuleTip& capsule, const Pose& X_BF, double margin, const Vec3& c_F,
              FingerTracker& tracker, PatchCache& cache, FingerContacts& out) {
-  constexpr double kApart = 1e-3;  // of the capsule's half length
   for (const std::uint32_t end : {1u, 2u}) {
     const Vec3 c_end = (end == 1 ? -1.0 : 1.0) * capsule.half_F;
-    if ((c_end - c_F).norm() < kApart * capsule.half_F.norm()) continue;
+    if ((c_end - c_F).norm() < kOnePoint * capsule.half_F.norm()) continue;
     ++out.queries;
     const SurfaceContact point =
         querySphere(shape, X_BF * c_end, capsule.radius, margin, tracker.feet[end - 1].ball, cache).main();

@@ -144,7 +144,7 @@ class MeshOnMesh {
     const double length_a = (a1 - a0).norm(), length_b = f_long.norm();
     const Vec3 f = f_long / length_b, across = e.cross(f), d = b0 - a0;
     const double sine2 = across.squaredNorm();
-    if (!(sine2 > kParallelEdges * kParallelEdges)) return;
+    if (!(sine2 > kNoAngle * kNoAngle)) return;
     const double s = d.cross(f).dot(across) / sine2, t = d.cross(e).dot(across) / sine2;
     const double slack = scale_.slack();
     if (s < -slack || s > length_a + slack || t < -slack || t > length_b + slack) return;

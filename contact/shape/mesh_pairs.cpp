@@ -58,8 +58,7 @@ class MeshOnSolid {
 
   // The solid's facet that faces against `n`, and its point on that side: the same for all triangles of a flat face.
   void faceAlong(const Vec3& n) {
-    constexpr double kSame = 1e-12;  // [rad]: the same normal, but for round-off
-    if ((n - faced_).squaredNorm() < kSame * kSame) return;
+    if ((n - faced_).squaredNorm() < kOneNormal * kOneNormal) return;
     faced_ = n;
     lowest_ = solid_.support(-n) - rounding_ * n;
     facet_.count = 0;

@@ -6,6 +6,7 @@
 #include "pincer/contact/shape/convex_features.h"
 #include "pincer/contact/shape/core_descent.h"
 #include "pincer/contact/shape/pad_contacts.h"
+#include "pincer/contact/shape/tolerances.h"
 #include "pincer/contact/shape/wall_line.h"
 #include "pincer/contact/shape/wander.h"
 #include "pincer/contact/smooth_mesh.h"
@@ -14,8 +15,6 @@
 
 namespace pincer::contact {
 namespace {
-
-constexpr double kApartOnPad = 1e-3;  // of the pad's size: two places nearer than that are one
 
 void add(const SurfaceContact& point, FingerContacts& out) {
   PINCER_ASSERT(out.count < kMaxFingerContacts);
@@ -87,7 +86,7 @@ class PadQuery {
     const SurfaceContact main = found.main();
     addFurther(found);
     if (isInsideFacet(main))
-      found.wander_B = wanderAt(shape_, main, pad_.rounding, kApartOnPad * size_, triedBall(), cache_);
+      found.wander_B = wanderAt(shape_, main, pad_.rounding, kOnePoint * size_, triedBall(), cache_);
     return found;
   }
 
@@ -98,7 +97,7 @@ class PadQuery {
     const Vec3 n_B = -(X_BF_.q * facet.n);
     for (int k = 0; k < facet.count; ++k) {
       const Vec3 from = cornerOf(facet, k), inwards = n_B.cross(from - cornerOf(facet, k + 1)).normalized();
-      if (!(inwards.dot(main.p_BS - from) > kApartOnPad * size_)) return false;
+      if (!(inwards.dot(main.p_BS - from) > kOnePoint * size_)) return false;
     }
     return facet.count > 2;
   }
@@ -122,7 +121,7 @@ class PadQuery {
       if (rate < 0) high = std::min(high, -inside / rate);
       if (rate == 0 && inside < 0) return false;
     }
-    if (!(high - low > kApartOnPad * size_)) return false;
+    if (!(high - low > kOnePoint * size_)) return false;
     PairPoints ends;
     for (const double s : {low, high}) {
       const Vec3 p_BS = main.p_BS + s * wall.along();
@@ -179,7 +178,7 @@ class PadQuery {
     }
     if (!deepest || deepest->phi > main.phi - slotOf(main).ease + sameGap()) return false;
     const auto wayTo = [&](const PairPoint& p) { return (p.p_W - deepest->p_W).norm(); };
-    const auto isApart = [&](const PairPoint& p) { return faces(p.n_W, main.n_B) && wayTo(p) > kApartOnPad * size_; };
+    const auto isApart = [&](const PairPoint& p) { return faces(p.n_W, main.n_B) && wayTo(p) > kOnePoint * size_; };
     for (const PairPoint* p = first; p != end; ++p) {
       if (isApart(*p) && (!furthest || wayTo(*p) > wayTo(*furthest))) furthest = p;
     }
@@ -248,7 +247,6 @@ class PadQuery {
   // from there, and has no other minimum. Another rim or bump would have a side that faces it. What is level along a
   // way, as a cylinder, isn't known by that.
   bool onlyFallsAway(const Facet& facet, const SurfaceContact& main) const {
-    constexpr double kLeans = 1e-6;  // sine
     const Vec3 ahead = X_BF_.q * facet.n, around = Vec3::Constant(reach());
     Vec3 low = Vec3::Constant(kInfinity), high = -low;
     for (int k = 0; k < facet.count; ++k) {
@@ -264,7 +262,7 @@ class PadQuery {
       if (std::min({heightOf(0), heightOf(1), heightOf(2)}) > reach()) return;
       const Vec3 way = (triangle.corner(0) + triangle.corner(1) + triangle.corner(2)) / 3 - main.p_BS;
       const Vec3 level = way - ahead.dot(way) * ahead;
-      falls = triangle.n.dot(level) > kLeans * level.norm();
+      falls = triangle.n.dot(level) > kNoAngle * level.norm();
     });
     return falls;
   }
@@ -300,7 +298,7 @@ class PadQuery {
   bool isKnown(const FingerContacts& found, const SurfaceContact& point) const {
     const Vec3 p_BT = point.p_BS + point.phi * point.n_B;
     return std::any_of(found.p_BT.begin(), found.p_BT.begin() + found.count,
-                       [&](const Vec3& other) { return (other - p_BT).norm() < kApartOnPad * size_; });
+                       [&](const Vec3& other) { return (other - p_BT).norm() < kOnePoint * size_; });
   }
 
   static constexpr double kSameNormal = 1e-4;  // [rad]

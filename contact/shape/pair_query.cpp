@@ -18,16 +18,15 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kUnbounded = std::numeric_limits<double>::infinity();  // [m]: no ball holds a half-space or dish
-
 double radiusOf(const Sphere& s) { return s.radius; }
 double radiusOf(const Box& b) { return b.half.norm(); }
 double radiusOf(const Capsule& c) { return c.radius + c.half_length; }
 double radiusOf(const Cylinder& c) { return std::sqrt(c.radius * c.radius + c.half_length * c.half_length); }
 // the round part reaches as far
 double radiusOf(const CylinderWithFlat& c) { return radiusOf(Cylinder{c.radius, c.half_length}); }
-double radiusOf(const HalfSpace&) { return kUnbounded; }
-double radiusOf(const Dish&) { return kUnbounded; }
+// no ball holds a half-space or dish
+double radiusOf(const HalfSpace&) { return kInfinity; }
+double radiusOf(const Dish&) { return kInfinity; }
 double radiusOf(const Mesh& m) { return m.surface->boundingRadius(); }
 double radiusOf(const Convex& c) { return c.hull->boundingRadius(); }
 

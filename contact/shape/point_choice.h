@@ -54,7 +54,6 @@ class PointChoice {
 
  private:
   static constexpr int kListed = 1024;  // chosen, 24 KB; more points are found again by each scan
-  static constexpr double kUnknown = std::numeric_limits<double>::infinity();  // [m^2]
 
   struct Near : Chosen {
     double reach2;  // no less than the square of d [m^2]
@@ -91,7 +90,7 @@ class PointChoice {
       if (!may_be_near(solid_.points[i])) continue;
       const double gap = gapOf(i);
       if (!(gap < margin_)) continue;
-      if (near_count_ < kListed) near_[near_count_] = {{i, gap}, kUnknown};
+      if (near_count_ < kListed) near_[near_count_] = {{i, gap}, kInfinity};
       ++near_count_;
       deepest_ = std::min(deepest_, gap);
     }
@@ -102,7 +101,7 @@ class PointChoice {
     if (near_count_ <= kListed)
       return static_cast<void>(std::for_each(near_.begin(), near_.begin() + near_count_, visit));
     for (int i = 0; i < candidates(); ++i) {
-      Near found{{i, gapOf(i)}, kUnknown};
+      Near found{{i, gapOf(i)}, kInfinity};
       if (found.gap < margin_) visit(found);
     }
   }

@@ -4,18 +4,17 @@
 #include <map>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
-
-constexpr double kOutside = 1e-10;  // of the size
 
 class QuickHull {
  public:
   explicit QuickHull(const std::vector<Vec3>& points) : points_(points) {
     Vec3 low = points.front(), high = points.front();
     for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    tolerance_ = kOutside * (high - low).norm();
+    tolerance_ = kOutOfPlane * (high - low).norm();
   }
 
   std::vector<std::array<int, 3>> build() {

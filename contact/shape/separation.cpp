@@ -11,8 +11,7 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kGapRounding = 1e-13;  // of the size: round-off
-constexpr double kTrustedGap = 1e-8;    // of the size: solids that are apart by more have nearest points to trust
+constexpr double kTrustedGap = 1e-8;  // of the size: solids that are apart by more have nearest points to trust
 // the same for round ones, whose nearest points take the more steps the nearer they are
 constexpr double kTrustedRound = 1e-3;
 constexpr double kMovedApart = 1e-2;  // of the size
@@ -103,6 +102,7 @@ class Search {
   static constexpr double kRelative = 1e-9;   // of the distance
   static constexpr double kAbsolute = 1e-12;  // of the size
   static constexpr double kLargest = 0.1;     // step of Newton's method [rad]
+  static constexpr double kBeside = 1e-4;     // of a kink [rad]
   static constexpr double kNear = 0.02;       // kinks to be looked at [rad]
   static constexpr double kWider = 4;         // than the overlap is deep: a disc that proves something
 
@@ -141,12 +141,11 @@ class Search {
     if (!isProved()) lookAtFace(a_, -best_.n, b_.support(best_.n));
   }
   void lookAtFace(const PosedSolid& solid, const Vec3& d, const Vec3& corner) {
-    constexpr double kSameNormal = 1e-12;  // [rad]: the face itself, but for round-off
     Facet facet;
     facetOf(solid.shape, solid.inwards(d), facet);
     if (facet.count < 3 || facet.rim_radius > 0) return;
     const Vec3 n = solid.inwards(d);
-    if ((facet.n - n).squaredNorm() > kSameNormal * kSameNormal) return;
+    if ((facet.n - n).squaredNorm() > kOneNormal * kOneNormal) return;
     const Vec3 p = solid.inwards(corner - solid.p);
     double radius = kInfinity;
     for (int i = 0; i < facet.count; ++i) {
@@ -160,7 +159,6 @@ class Search {
   // furthest along four directions in that plane.
   void lookAround() {
     constexpr double kTurn = 1e-11;  // towards each [rad]
-    constexpr double kFlat = 1e-10;  // of the size: how far the points may be out of the plane
     // off the axes of the frame, along which edges often lie
     constexpr double kCosine = 0.92, kSine = 0.39191835884530846;
     const Mat3 F = frameFromNormal(best_.n);
@@ -169,7 +167,7 @@ class Search {
     for (Vec2& corner : corners) {
       const Vec3 d = best_.n - kTurn * (towards.x() * F.col(0) + towards.y() * F.col(1));
       const Vec3 p = a_.support(-d) - b_.support(d);
-      if (best_.n.dot(p) > best_.gap + kFlat * size_) return;
+      if (best_.n.dot(p) > best_.gap + kOutOfPlane * size_) return;
       corner = {F.col(0).dot(p), F.col(1).dot(p)};
       towards = {-towards.y(), towards.x()};
     }
@@ -177,7 +175,7 @@ class Search {
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Vec2 side = corners[(i + 1) % corners.size()] - corners[i];
       const double length = side.norm();
-      if (length > kFlat * size_) radius = std::min(radius, cross(corners[i], side) / length);
+      if (length > kOutOfPlane * size_) radius = std::min(radius, cross(corners[i], side) / length);
     }
     if (std::isfinite(radius) && radius > seen_.radius) seen_ = {radius, best_.gap};
   }
@@ -199,8 +197,7 @@ class Search {
   }
 
   void snapToFaces() {
-    constexpr double kSnapped = 1e-4;  // [rad]
-    const Kinks kinks = kinksNear(best_.n, kSnapped, 0);
+    const Kinks kinks = kinksNear(best_.n, kBeside, 0);
     for (int i = 0; i < kinks.normal_count; ++i) prefer(kinks.normals[static_cast<std::size_t>(i)]);
   }
 
@@ -231,7 +228,6 @@ class Search {
 
   // On the circle across an edge, and to both sides of it, where one or the other end of the edge decides.
   void climbBeside(const Vec3& edge) {
-    constexpr double kBeside = 1e-4;  // [rad]
     climbFrom(best_.n, &edge);
     const Vec3 n = best_.n;
     for (const double side : {-kBeside, kBeside}) climbFrom((n + side * edge).normalized(), nullptr);
@@ -240,7 +236,7 @@ class Search {
   void preferAcross(const Vec3& e, const Vec3& f) {
     const Vec3 n = e.cross(f);
     const double length = n.norm();
-    if (length > kParallelEdges) prefer(n.dot(best_.n) < 0 ? Vec3(n / -length) : Vec3(n / length));
+    if (length > kNoAngle) prefer(n.dot(best_.n) < 0 ? Vec3(n / -length) : Vec3(n / length));
   }
 
   // Faces whose normal, and edges whose circle is within these angles of n [rad].

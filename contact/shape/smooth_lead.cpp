@@ -12,14 +12,11 @@
 namespace pincer::contact {
 namespace {
 
-constexpr double kAtEnd = 1e-6;      // of the size: beside an end counts as on it
 constexpr double kAtRest = 1e-8;     // of the size: where steps end
 constexpr double kLevel = 1e-8;      // sine
-constexpr double kOnePoint = 1e-3;   // of the size: points nearer to each other are one
 constexpr double kLift = 0.02;       // of the size, beside the depth: how far a face is moved in
 constexpr double kFirstStep = 0.05;  // of the size
 constexpr double kLongestLead = 10;  // of the size
-constexpr int kMostQueries = 24;     // of the surface, for one point
 constexpr int kMostLess = 2;         // from a face to an edge to a corner
 
 class SmoothLead {
@@ -32,7 +29,7 @@ class SmoothLead {
   // that the point is on.
   void lead(FoundPoint& point, bool is_on_crease, bool whole) const {
     const Vec3 d = solid_.inwards(point.n_W);
-    const double lift = kLift * size_ + std::max(0.0, -2 * point.phi), slack = kAtEnd * size_;
+    const double lift = kLift * size_ + std::max(0.0, -2 * point.phi), slack = kSamePlace * size_;
     Vec3 c = solid_.inwards(point.p_W - 0.5 * point.phi * point.n_W - solid_.p) - roundingOf(solid_) * d;
     const Vec3 on_mesh = point.p_W + 0.5 * point.phi * point.n_W;
     ShellContact found;

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
+#include "pincer/contact/shape/tolerances.h"
+
 namespace pincer::contact {
-namespace {
-
-constexpr double kSameWay = 1e-6;  // difference of unit vectors
-
-}  // namespace
 
 WallLine::WallLine(const SurfaceNet& net, std::int32_t t, const Vec3& p) : net_(net), p_(p) {
   if (!findLine(t, p, along_, &normal_)) return;
@@ -22,7 +19,7 @@ int WallLine::straightEdge(std::int32_t t) const {
   int found = -1;
   for (int i = 0; i < 3; ++i) {
     const Vec3 n = net_.normal(t, i), e = (net_.vertex(t, (i + 1) % 3) - net_.vertex(t, i)).normalized();
-    if ((net_.normal(t, (i + 1) % 3) - n).norm() > kSameWay || std::abs(e.dot(n)) > kSameWay) continue;
+    if ((net_.normal(t, (i + 1) % 3) - n).norm() > kNoAngle || std::abs(e.dot(n)) > kNoAngle) continue;
     if (found >= 0) return -1;
     found = i;
   }
@@ -60,7 +57,7 @@ bool WallLine::findLine(std::int32_t t, const Vec3& q, Vec3& line, Vec3* n) cons
   const Vec3 other = lineThrough(t, corner, along);
   const double slope = other.dot(w) / other.dot(along);
   const double width = w.dot(to_corner) + slope * (to_q - to_corner).dot(along);  // of the wall at q
-  if (!(width > kSameWay * to_corner.norm())) return false;
+  if (!(width > kNoAngle * to_corner.norm())) return false;
   line = (along + slope / width * asideOf(to_q)).normalized();
   const double share = std::clamp(w.dot(to_q) / width, 0.0, 1.0);
   if (n) *n = ((1 - share) * net_.normal(t, edge) + share * net_.normal(t, corner)).normalized();

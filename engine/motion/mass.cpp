@@ -10,8 +10,6 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;  // of volumes of round solids
-
 // A solid by its moments: volume [m^3], centre [m], and the means of (x - c)(x - c)^T over the volume [m^2].
 struct Moments {
   double volume;
@@ -22,21 +20,21 @@ struct Moments {
 Moments symmetric(double volume, const Vec3& spread) { return {volume, Vec3::Zero(), spread.asDiagonal()}; }
 
 Moments momentsOf(const contact::Sphere& s) {
-  return symmetric(4.0 / 3.0 * kPi * s.radius * s.radius * s.radius, Vec3::Constant(s.radius * s.radius / 5));
+  return symmetric(4.0 / 3.0 * M_PI * s.radius * s.radius * s.radius, Vec3::Constant(s.radius * s.radius / 5));
 }
 
 Moments momentsOf(const contact::Box& b) { return symmetric(8 * b.half.prod(), b.half.cwiseAbs2() / 3); }
 
 Moments momentsOf(const contact::Cylinder& c) {
   const double rr = c.radius * c.radius;
-  return symmetric(2 * kPi * rr * c.half_length, {rr / 4, rr / 4, c.half_length * c.half_length / 3});
+  return symmetric(2 * M_PI * rr * c.half_length, {rr / 4, rr / 4, c.half_length * c.half_length / 3});
 }
 
 // A cylinder and two half balls, whose means of t and t^2 along the axis, from the equator, are 3 r / 8 and r^2 / 5.
 Moments momentsOf(const contact::Capsule& c) {
   const double r = c.radius, h = c.half_length;
-  const double tube = 2 * kPi * r * r * h;
-  const double caps = 4.0 / 3.0 * kPi * r * r * r;
+  const double tube = 2 * M_PI * r * r * h;
+  const double caps = 4.0 / 3.0 * M_PI * r * r * r;
   const double volume = tube + caps;
   const double across = (tube * r * r / 4 + caps * r * r / 5) / volume;
   const double along = (tube * h * h / 3 + caps * (h * h + 0.75 * h * r + r * r / 5)) / volume;

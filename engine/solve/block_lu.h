@@ -29,8 +29,8 @@ class BlockLu {
   void connect(int a, int b);
   bool order(int most);
   int nodes() const { return nodes_; }
-  int blocks() const { return used_; }
   int products() const { return products_; }  // of blocks, in a factorisation
+  std::int64_t cost() const { return std::int64_t{kBlock * kBlock * kBlock} * products_; }  // of it: multiplications
 
   // Where the row-major block H_ab lies, for connected a and b; the same as long as the structure is.
   int place(int a, int b) const {

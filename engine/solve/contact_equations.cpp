@@ -6,6 +6,7 @@
 #include "pincer/engine/solve/inverse3.h"
 #include "pincer/engine/solve/linear.h"
 #include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/mover_matrix.h"
 
 namespace pincer::engine {
 namespace {
@@ -74,23 +75,13 @@ int nodeOf(const SolverScratch& scratch, const ContactSide& side) {
 
 }  // namespace
 
-constexpr int kMostProducts = 2000;  // of blocks in a factorisation, some 0.1 ms
-
 EquationForm chooseForm(const ContactProblem& problem, SolverScratch& scratch) {
   const int n = problem.contactCount();
   const int nodes = numberMovers(problem, scratch.node.data());
   if (n <= scratch.dense_contacts && kMoverFreedoms * nodes >= problem.rowCount()) return EquationForm::kContacts;
-  scratch.lu.begin(nodes);
-  for (int i = 0; i < n; ++i) {
-    const std::span<const ContactSide> sides = problem.sidesOf(i);
-    for (std::size_t k = 0; k < sides.size(); ++k) {
-      for (std::size_t l = k + 1; l < sides.size(); ++l) {
-        const int a = nodeOf(scratch, sides[k]), b = nodeOf(scratch, sides[l]);
-        if (a >= 0 && b >= 0) scratch.lu.connect(a, b);
-      }
-    }
-  }
-  if (scratch.lu.order(kMostProducts)) return EquationForm::kMovers;
+  connectMovers(
+      problem, nodes, [&](const ContactSide& side) { return nodeOf(scratch, side); }, scratch.lu);
+  if (scratch.lu.order(kFewProducts)) return EquationForm::kMovers;
   return n <= scratch.dense_contacts ? EquationForm::kContacts : EquationForm::kTooLarge;
 }
 
@@ -130,10 +121,9 @@ void ContactEquations::setGeneral(int i, const double* E, const double* P) {
 
 // Multiplications of a factorisation, a solution and what an iteration does around them.
 std::int64_t ContactEquations::cost() const {
-  // Multiplications: per contact estimated, per product of two blocks counted.
-  constexpr std::int64_t kPerContact = 1000, kPerProduct = BlockLu::kBlock * BlockLu::kBlock * BlockLu::kBlock;
+  constexpr std::int64_t kPerContact = 1000;  // multiplications, estimated
   const std::int64_t m = problem_.rowCount(), contacts = kPerContact * problem_.contactCount();
-  return contacts + (form_ == EquationForm::kContacts ? m * m * (m + 24) / 3 : kPerProduct * scratch_.lu.products());
+  return contacts + (form_ == EquationForm::kContacts ? m * m * (m + 24) / 3 : scratch_.lu.cost());
 }
 
 bool ContactEquations::factorise() {

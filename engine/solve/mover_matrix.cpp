@@ -9,18 +9,6 @@
 namespace pincer::engine {
 namespace {
 
-void connectMovers(const ContactProblem& problem, BlockLu& lu) {
-  lu.begin(problem.movers);
-  for (int i = 0; i < problem.contactCount(); ++i) {
-    const std::span<const ContactSide> sides = problem.sidesOf(i);
-    for (std::size_t a = 0; a < sides.size(); ++a) {
-      for (std::size_t b = a + 1; b < sides.size(); ++b) {
-        if (sides[a].mover >= 0 && sides[b].mover >= 0) lu.connect(sides[a].mover, sides[b].mover);
-      }
-    }
-  }
-}
-
 // Where the blocks of each contact lie, side by side; false if there isn't room for all of them.
 bool findPlaces(const ContactProblem& problem, SolverScratch& scratch) {
   std::size_t next = 0;
@@ -59,7 +47,8 @@ template <class Rows>
 
 MoverMatrix::MoverMatrix(const ContactProblem& problem, SolverScratch& scratch, int most)
     : problem_(problem), scratch_(scratch) {
-  connectMovers(problem, scratch.lu);
+  connectMovers(
+      problem, problem.movers, [](const ContactSide& side) { return side.mover; }, scratch.lu);
   fits_ = scratch.lu.order(scratch.is_patient ? std::numeric_limits<int>::max() : most) && findPlaces(problem, scratch);
 }
 
@@ -123,13 +112,10 @@ void MoverMatrix::skip(int i) {
 bool MoverMatrix::factorise() { return spend(costOfFactorisation(), scratch_) && scratch_.lu.factorise(); }
 
 std::int64_t MoverMatrix::costOfFactorisation() const {
-  // Multiplications: per contact estimated, per product of two blocks of 6 x 6 counted.
-  constexpr std::int64_t kPerContact = 600, kPerProduct = 216;
-  return kPerContact * problem_.contactCount() + kPerProduct * scratch_.lu.products();
+  constexpr std::int64_t kPerContact = 600;  // multiplications, estimated
+  return kPerContact * problem_.contactCount() + scratch_.lu.cost();
 }
 
 void MoverMatrix::solve(double* x) const { scratch_.lu.solve(x); }
-
-std::int64_t MoverMatrix::costOfSolution() const { return 36 * scratch_.lu.blocks(); }
 
 }  // namespace pincer::engine

@@ -17,6 +17,22 @@ inline int affordableProducts(const ContactProblem& problem) {
   return std::max(kFewProducts, kProductsPerContact * problem.contactCount());
 }
 
+// The structure of a problem's movers in `lu`, from `begin` on: nodes that share a contact are connected.
+//   node_of  the node of a contact's side; -1: none
+template <class NodeOf>
+void connectMovers(const ContactProblem& problem, int nodes, const NodeOf& node_of, BlockLu& lu) {
+  lu.begin(nodes);
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const std::span<const ContactSide> sides = problem.sidesOf(i);
+    for (std::size_t k = 0; k < sides.size(); ++k) {
+      for (std::size_t l = k + 1; l < sides.size(); ++l) {
+        const int a = node_of(sides[k]), b = node_of(sides[l]);
+        if (a >= 0 && b >= 0) lu.connect(a, b);
+      }
+    }
+  }
+}
+
 class MoverMatrix {
  public:
   // Finds the structure, in `scratch`. fits(): the factors do, in memory and in `most` products of blocks.
@@ -36,7 +52,6 @@ class MoverMatrix {
   bool factorise();
   void solve(double* x) const;               // x becomes H^-1 x
   std::int64_t costOfFactorisation() const;  // and of filling it: multiplications
-  std::int64_t costOfSolution() const;
 
  private:
   template <class Rows, class Times>

@@ -38,16 +38,8 @@ void fillBlock(const ContactProblem& problem, const double* scale, int i, int j,
   });
 }
 
-// out = W r, column by column; two contacts of three rows, the usual grasp, in registers.
+// out = W r, column by column.
 void multiplyDense(const double* W, const double* r, int m, double* out) {
-  if (m == 6) {
-    double sum[6] = {};
-    for (int l = 0; l < 6; ++l) {
-      for (int row = 0; row < 6; ++row) sum[row] += W[6 * l + row] * r[l];
-    }
-    std::copy(sum, sum + 6, out);
-    return;
-  }
   for (int row = 0; row < m; ++row) out[row] = 0;
   for (int l = 0; l < m; ++l, W += m) {
     for (int row = 0; row < m; ++row) out[row] += W[row] * r[l];

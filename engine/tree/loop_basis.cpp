@@ -10,8 +10,6 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kNothingNew = 1e-8;  // of a row, once it is over the largest one of its loop: round-off leaves 1e-16
-
 double dot(std::span<const double> x, std::span<const double> y, std::size_t from) {
   double sum = 0;
   for (std::size_t i = from; i < x.size(); ++i) sum += x[i] * y[i];

@@ -17,6 +17,9 @@
 
 namespace pincer::engine {
 
+// of a row's length: what is left of one that the others imply; round-off leaves 1e-16
+constexpr double kNothingNew = 1e-8;
+
 class LoopBasis {
  public:
   explicit LoopBasis(const TreeModel& tree);

@@ -43,6 +43,8 @@ void wantBend(const TreeModel& tree, const TreeBase& base, const Vec3& gravity_W
 // Adds the least change, in M, that gives the loops what is wanted.
 void addWanted(const TreeModel& tree, const TreeFactor& factor, LoopRows& rows, std::span<double> x);
 
+constexpr int kClosingPasses = 3;  // of Newton's method from a tick's error: 1e-6, 1e-12, round-off
+
 // Projects q onto the loops by Newton's method, at most `passes` steps, and then u, in the metric of `factor`. `place`
 // is that of q before and after. Returns the largest miss that is left [m, rad].
 double closeLoops(const TreeModel& tree, const TreeBase& base, const TreeFactor& factor, int passes, LoopRows& rows,

@@ -9,8 +9,6 @@
 namespace pincer::engine {
 namespace {
 
-constexpr int kLoopPasses = 3;  // Newton's method from a tick's error: 1e-6, 1e-12, round-off
-
 void addTimes(double factor, const std::vector<double>& x, std::vector<double>& sum) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * x[i];
 }
@@ -306,7 +304,7 @@ void advanceTree(const TreeModel& tree, const TreeBase& base, const TreeGain& ga
   if (tree.loops.empty()) {
     moveLinks(tree, base, q_out, u_out, course.end);
   } else {
-    closeLoops(tree, base, course.factor, kLoopPasses, course.loop_rows, course.end_loops, q_out, u_out, course.end);
+    closeLoops(tree, base, course.factor, kClosingPasses, course.loop_rows, course.end_loops, q_out, u_out, course.end);
   }
 }
 

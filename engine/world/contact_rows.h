@@ -30,6 +30,8 @@ namespace pincer::engine {
 constexpr double kNormalCorrection = 0.2;    // gamma, per tick [-]
 constexpr double kTangentCorrection = 0.5;   // gamma, per tick [-]
 constexpr double kLargestCorrection = 0.05;  // [m/s]
+constexpr double kFastTurn = 0.1;            // [rad] in a part of a tick: its middle doesn't tell all of it
+constexpr double kResidue = 1e-9;            // relative, ten times the solver's tolerance
 constexpr double kClosingSpeed = 1e-6;       // slower approaches count as rest [m/s]
 
 // By id.

@@ -133,7 +133,7 @@ bool reviseDrive(const WorldModel& model, const WorldState& state, JointRowScrat
   }
   now.force = impulse / h;
   if (!isLimited(drive)) return false;
-  const double slack = kBrakeRoundOff * rangeOf(drive);
+  const double slack = kResidue * rangeOf(drive);
   const bool is_right = now.mode == DriveMemory::kLow ? now.force <= drive.lower_force + slack
                         : now.mode == DriveMemory::kHigh
                             ? now.force >= drive.upper_force - slack
@@ -149,7 +149,7 @@ void rememberDrive(const WorldModel& model, const JointRowScratch& row, WorldSta
   const int d = treeOf(model, row).drives[row.element].drive;
   DriveScratch& now = scratch.drives[d];
   if (row.wanted) {
-    const double r = row.touched ? row.impulse_W.x() : 0, full = (1 - kBrakeRoundOff) * row.limit;
+    const double r = row.touched ? row.impulse_W.x() : 0, full = (1 - kResidue) * row.limit;
     now.mode = r >= full ? DriveMemory::kHigh : r <= -full ? DriveMemory::kLow : DriveMemory::kWithin;
     now.force = r / scratch.h + middleOf(model.drives[d]);
   }

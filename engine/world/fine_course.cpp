@@ -31,14 +31,14 @@ void forEachBrake(WorldScratch& scratch, int tree, F f) {
 bool slidesThroughout(const TreeModel& tree, const TreeScratch& s, std::span<const double> u,
                       const JointRowScratch& row) {
   const double r = row.impulse_W.x(), start = rateOf(tree, s.course.mid, row.element, u);
-  return row.touched && std::abs(r) >= (1 - kBrakeRoundOff) * row.limit && endRate(tree, s, row.element) * r < 0 &&
+  return row.touched && std::abs(r) >= (1 - kResidue) * row.limit && endRate(tree, s, row.element) * r < 0 &&
          start * r <= 0;
 }
 
 // A brake that holds what stood at the start.
 bool holdsThroughout(const TreeModel& tree, std::span<const double> u, const JointRowScratch& row) {
   return !tree.has_couplings && tree.loops.empty() && u[tree.coordinates[row.element].column] == 0 &&
-         std::abs(row.impulse_W.x()) < (1 - kBrakeRoundOff) * row.limit;
+         std::abs(row.impulse_W.x()) < (1 - kResidue) * row.limit;
 }
 
 bool goesFree(const WorldModel& model, const WorldState& state, WorldScratch& scratch, int t) {

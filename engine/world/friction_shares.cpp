@@ -4,14 +4,13 @@
 #include <span>
 
 #include "pincer/engine/solve/cone.h"
-#include "pincer/engine/world/contact.h"
+#include "pincer/engine/solve/stuck_contacts.h"
+#include "pincer/engine/world/stick_bias.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr double kUsedUp = 0.5;      // beyond, stuck_contacts.h declines as well
 constexpr double kWorthwhile = 0.9;  // of the use, at most: shares that do as well stay, to the bit
-constexpr double kOneFace = 0.9999;  // cosine of the angle between the normals; as in alignFaces
 
 // Of the contacts of one fingertip with one body those that push.
 class Face {
@@ -25,7 +24,7 @@ class Face {
     bool is_face = true;
     forEachPushing([&](const Contact& c, const double* r, int rows) {
       if (!lead) lead = &c;
-      is_face = is_face && rows <= kTorsionRow + 1 && c.n_W().dot(lead->n_W()) > kOneFace;
+      is_face = is_face && rows <= kTorsionRow + 1 && c.n_W().dot(lead->n_W()) > kSamePlane;
       const double w = c.mu * r[kNormalRow];
       weight_ += w;
       centre_W_ += w * c.p_W;
@@ -102,7 +101,7 @@ class Face {
 void shareOn(std::span<const Contact> contacts, int first, WorldScratch& scratch) {
   Face face(contacts, first, scratch);
   const double used2 = face.used2();
-  if (!(used2 > kUsedUp * kUsedUp) || !face.measure()) return;
+  if (!(used2 > kStuckFrictionUsed * kStuckFrictionUsed) || !face.measure()) return;
   if (face.usedByShares2() < kWorthwhile * kWorthwhile * used2) face.share();
 }
 

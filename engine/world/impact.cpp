@@ -17,7 +17,6 @@ constexpr double kShortestFlight = 1.0 / 16;  // of a tick
 constexpr double kSlowWay = 0.5;              // of half the thickness, in a tick: the pair need not be swept
 constexpr double kEnergyRoundOff = 1e-12;     // of the energy that goes to and fro in a hit
 constexpr double kHardLanding = 1;            // of what gravity adds to a velocity in a tick
-constexpr double kLate = 1.5;                 // times the part of the tick: what closes so late may still close in it
 // gap at which a contact takes part in an impact [m]: what other contacts leave of the root
 constexpr double kTouching = 1e-7;
 

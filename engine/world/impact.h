@@ -30,6 +30,7 @@ namespace pincer::engine {
 // place and time than the landing, first order.
 constexpr int kMostLandings = 2;     // by which a tick is cut; what lands after them lands at its end
 constexpr double kAlongWith = 0.25;  // of hardLanding: what closes faster lands with what lands hard
+constexpr double kLate = 1.5;        // times the part of the tick: what closes so late may still close in it
 
 // How often a tick is cut by impacts at most; what hits then lands, or bounces at the tick's end.
 constexpr int kMostImpacts = 16;

@@ -10,12 +10,12 @@
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/round_contact.h"
 #include "pincer/engine/world/contact_rows.h"
+#include "pincer/engine/world/stick_bias.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr double kNormalRowWeight = 10;  // beside 1 of tangential rows: gaps come first
-constexpr double kInside = -1e-9;        // of the cone's radius: what is further in sticks
+constexpr double kInside = -1e-9;  // of the cone's radius: what is further in sticks
 // contradictions between biases below this are below the solver's tolerance [m/s]
 constexpr double kNegligible = 1e-11;
 constexpr double kConverged = 1e-10;             // of |A^T b|, squared: 1e-5
@@ -76,7 +76,7 @@ class BiasFit {
       if (!takesPart(c)) continue;
       const bool is_stuck = sticks(c, i);
       for (int k = 0; k < rows; ++k) {
-        const double w = weight_[first + k] = k == kNormalRow ? kNormalRowWeight : is_stuck ? 1 : 0;
+        const double w = weight_[first + k] = k == kNormalRow ? kNormalWeight : is_stuck ? 1 : 0;
         b_[first + k] = w * (asked_ ? asked_[first + k] : unitOfRow(c, k) * c.bias_C[k]);
         largest = std::max(largest, std::abs(b_[first + k]));
       }
@@ -217,10 +217,9 @@ class BiasFit {
 
 // By how much contacts on what turns may contradict each other: a tick's chord is shorter than its arc [m/s].
 double chordError(double h, const Motion& m, const Vec3& arm_W) {
-  constexpr double kChord = 1.0 / 24;   // sin(x / 2) = x / 2 (1 - x^2 / 24 + ..)
-  constexpr double kLargestTurn = 0.1;  // [rad], chosen: beyond, more than a chord is wrong
+  constexpr double kChord = 1.0 / 24;  // sin(x / 2) = x / 2 (1 - x^2 / 24 + ..)
   const double turn2 = h * h * m.w_W.squaredNorm();
-  return turn2 <= kLargestTurn * kLargestTurn ? kChord * turn2 * (m.v_W + m.w_W.cross(arm_W)).norm() : 0;
+  return turn2 <= kFastTurn * kFastTurn ? kChord * turn2 * (m.v_W + m.w_W.cross(arm_W)).norm() : 0;
 }
 
 double largestChordError(double h, std::span<const int> order, const std::vector<Contact>& contacts) {
@@ -251,7 +250,7 @@ bool askForNothing(const ContactProblem& problem, const double* r, std::span<con
       for (int k = 0; k < rows; ++k) largest = std::max(largest, std::abs(unitOfRow(c, k) * c.bias_C[k]));
     });
   }
-  return kNormalRowWeight * largest <= kNegligible;
+  return kNormalWeight * largest <= kNegligible;
 }
 
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/tree/loop_basis.h"
 #include "pincer/engine/world/joints.h"
 
 namespace pincer::engine {
@@ -23,7 +24,7 @@ class Basis {
       for (int q = 0; q < count_; ++q) subtract(w, vector(q));
     }
     const double after = std::sqrt(dot(w, w));
-    if (!(after > kDependent * before)) return false;
+    if (!(after > kNothingNew * before)) return false;
     for (int i = 0; i < size_; ++i) w[i] /= after;
     ++count_;
     return true;
@@ -49,7 +50,6 @@ class Basis {
   int count() const { return count_; }
 
  private:
-  static constexpr double kDependent = 1e-8;  // of its length: what is left of a row that the others imply
   double dot(const double* a, const double* b) const {
     double sum = 0;
     for (int i = 0; i < size_; ++i) sum += a[i] * b[i];

@@ -1,13 +1,13 @@
 // joint_row_parts: what stops, brakes and drives have in common (joint_rows.h).
 #pragma once
 #include "pincer/engine/state.h"
+#include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
 
 // most of w h F: what a brake can hold doesn't count among the problem's speeds [m/s, rad/s]
 constexpr double kGripSpeed = 1;
-constexpr double kBrakeRoundOff = 1e-9;  // of a force at its limit: ten times the solver's tolerance
 
 inline const TreeModel& treeOf(const WorldModel& model, const JointRowScratch& row) { return model.trees[row.tree]; }
 inline std::uint64_t idOfRow(int slot) { return std::uint64_t{2} << 62 | static_cast<std::uint64_t>(slot) << 32; }

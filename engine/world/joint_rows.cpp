@@ -15,10 +15,8 @@ namespace pincer::engine {
 namespace {
 
 constexpr int kRowsPerCoordinate = 3;  // one of each JointRowKind
-// times this part of the tick: what gets to its stop so late may still get there in it
-constexpr double kLateAtStop = 1.5;
-constexpr double kAtHit = 1e-9;    // in an impact: what is left of the root [m, rad]
-constexpr double kAtStop = 1e-12;  // [m, rad]
+constexpr double kNearStop = 1e-9;     // where a hit may leave it [m, rad]
+constexpr double kAtStop = 1e-12;      // [m, rad]
 
 int slotOf(const TreeModel& tree, int coordinate, JointRowKind kind) {
   return kRowsPerCoordinate * (tree.first_coordinate + coordinate) + static_cast<int>(kind);
@@ -51,10 +49,9 @@ bool hasStop(const TreeCoordinate& own, JointRowKind kind) {
 JointRowScratch::Hit hitOf(const WorldModel& model, const WorldState& state, const WorldScratch& scratch, int slot,
                            const JointRowScratch& row, const StopGap& gap) {
   using Hit = JointRowScratch::Hit;
-  constexpr double kApart = 1e-9;  // [m, rad]
   const double h = scratch.h, phi = gap.mid - 0.5 * h * gap.rate;
-  if (scratch.stops_hit == Hit::kNone || !(h > 0) || row.wanted || !(phi > kApart) ||
-      !(phi + kLateAtStop * h * std::min(gap.rate, gap.free_rate) < 0))
+  if (scratch.stops_hit == Hit::kNone || !(h > 0) || row.wanted || !(phi > kNearStop) ||
+      !(phi + kLate * h * std::min(gap.rate, gap.free_rate) < 0))
     return Hit::kNone;
   if (pushedBefore(state, idOfRow(slot))) return Hit::kNone;
   const double u = -std::sqrt(std::max(gap.rate * gap.rate - 2 * row.acceleration * phi, 0.0));
@@ -70,7 +67,7 @@ void putStop(const WorldModel& model, const WorldState& state, int slot, JointRo
   if (scratch.h > 0) row.acceleration = (gap.free_rate - gap.rate) / scratch.h;
   row.hit = hitOf(model, state, scratch, slot, row, gap);
   if (row.hit != JointRowScratch::Hit::kNone) return;
-  row.wanted = row.wanted || std::min(gap.mid, gap.end) <= (scratch.h > 0 ? kAtStop : kAtHit);
+  row.wanted = row.wanted || std::min(gap.mid, gap.end) <= (scratch.h > 0 ? kAtStop : kNearStop);
   if (!row.wanted) return;
   row.mobility = mobilityOf(model, row, scratch.trees[row.tree]);
   row.start = {{0, 0, gap.rate}, Vec3::Zero()};
@@ -94,9 +91,8 @@ void putFriction(const WorldModel& model, const WorldState& state, int slot, Joi
 
 // The stops of a coordinate are out of reach.
 bool isAwayFromStops(const WorldState& state, const TreeModel& tree, const TreeCoordinate& own) {
-  constexpr double kAway = 1e-9;  // [rad, m]
   const double q = state.tree_q[tree.first_q + own.q];
-  return q > own.traits.lower + kAway && q < own.traits.upper - kAway;
+  return q > own.traits.lower + kNearStop && q < own.traits.upper - kNearStop;
 }
 
 void unlock(const TreeModel& tree, TreeScratch& s, WorldScratch& scratch) {
@@ -275,7 +271,7 @@ double timeOfStop(const WorldModel& model, const WorldState& state, const WorldS
   const double root = std::sqrt(root2), s = gap.rate < 0 ? 2 * phi / (root - h * gap.rate)
                                             : bent < 0   ? (root + h * gap.rate) / (-2 * bent)
                                                          : 2.0;
-  return s <= kLateAtStop ? std::max(s, 0.0) * h : std::numeric_limits<double>::infinity();
+  return s <= kLate ? std::max(s, 0.0) * h : std::numeric_limits<double>::infinity();
 }
 
 bool reviseJointRows(const WorldModel& model, const WorldState& state, WorldScratch& scratch) {
@@ -340,7 +336,7 @@ void rememberJointRows(const WorldModel& model, WorldState& state, WorldScratch&
     if (row.kind != JointRowKind::kFriction || row.locked) continue;
     const double r = row.touched ? row.impulse_W.x() : 0;
     const bool slips =
-        row.wanted ? std::abs(r) >= (1 - kBrakeRoundOff) * row.limit && rate * r < 0 : s.constant[row.element] != 0;
+        row.wanted ? std::abs(r) >= (1 - kResidue) * row.limit && rate * r < 0 : s.constant[row.element] != 0;
     BrakeMemory& memory = state.brakes[tree.first_coordinate + row.element];
     const bool locks = !slips && row.wanted && row.touched && mayLock(state, tree, s, row, rate);
     memory = locks      ? BrakeMemory::kLocks

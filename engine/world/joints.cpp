@@ -5,13 +5,13 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/solve/linear.h"
+#include "pincer/engine/tree/loop_closure.h"
 #include "pincer/engine/world/held_body.h"
 
 namespace pincer::engine {
 namespace {
 
 constexpr double kJointRegularisation = 1e-13;  // of A's diagonal
-constexpr int kSettlings = 3;                   // Newton's method from a tick's error: 1e-6, 1e-12, round-off
 
 // One side of a joint at one moment: where its frame J is, and how its body answers impulses.
 struct JointSide {
@@ -274,7 +274,7 @@ namespace {
 Vec3 settlePositions(const WorldModel& model, const JointGroup& g, const JointMoment& moment, WorldState& state,
                      WorldScratch& scratch, JointGroupScratch& group) {
   Vec3 added_W = Vec3::Zero();
-  for (int pass = 0; pass < kSettlings; ++pass) {
+  for (int pass = 0; pass < kClosingPasses; ++pass) {
     writeGroup(model, g, moment, group);
     factorise(model, moment, group);
     for (std::size_t k = 0; k < group.rows.size(); ++k) group.lambda[k] = group.rows[k].miss;

@@ -29,6 +29,9 @@
 
 namespace pincer::engine {
 
+// [m, rad]: more than the round-off of a scene file isn't what its author meant
+constexpr double kLargestJointGap = 1e-6;
+
 // Rows at the predicted middle; changes the free motions to what the joints allow. After all bodies are predicted.
 void predictJoints(const WorldModel& model, WorldScratch& scratch);
 

@@ -124,10 +124,9 @@ void sweepPushes(const WorldModel& model, bool standing, WorldScratch& scratch) 
 // The middle of this part of the tick doesn't show how deep a corner goes that turns so far in it: what lifts the body
 // then is taken from its own motion, or spin would become height.
 void payForLift(const WorldModel& model, const WorldScratch& scratch, std::size_t i, BodyState& body) {
-  constexpr double kTurnedIn = 0.1;  // [rad]
   const double lift = -model.bodies[i].mass * scratch.gravity_W.dot(scratch.bodies[i].push.v_W);
   const Vec3 w_W = angularVelocity(model.bodies[i].rotation, body.X_WI.q, body.L_W);
-  if (!(lift > 0) || !(scratch.h * w_W.norm() > kTurnedIn)) return;
+  if (!(lift > 0) || !(scratch.h * w_W.norm() > kFastTurn)) return;
   const double kinetic = 0.5 * (model.bodies[i].mass * body.v_W.squaredNorm() + body.L_W.dot(w_W));
   const double left = kinetic > lift ? std::sqrt(1 - lift / kinetic) : 0;
   body.v_W *= left;

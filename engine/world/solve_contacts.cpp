@@ -10,8 +10,6 @@ namespace {
 
 // slower than this is rest: well above the solver's residual, far below anything felt [m/s]
 constexpr double kSlidingSpeed = 1e-9;
-constexpr double kOnCone = 1 - 1e-9;  // of mu r_n, from which friction counts as exhausted
-constexpr double kResidue = 1e-9;     // of the velocity with which a contact opens, ten times the solver's tolerance
 
 double inverseMassOf(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
   if (side.kind == SideKind::kJoint) return scratch.joint_rows[side.index].mobility;
@@ -48,7 +46,7 @@ void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, C
   c.u_C = Eigen::Map<const Vec3>(u);
   if (isResidue(model, scratch, c)) c.r.setZero();
   c.impulse_W = c.R_WC * c.r.head<3>();
-  const double on_cone = kOnCone * c.mu * c.r[2];
+  const double on_cone = (1 - kResidue) * c.mu * c.r[2];
   c.sliding = c.active() && tangentNorm2(c.r.data(), count) >= on_cone * on_cone &&
               tangentNorm2(u, count) > kSlidingSpeed * kSlidingSpeed;
 }

@@ -12,9 +12,6 @@
 namespace pincer::engine {
 namespace {
 
-// [m, rad]: more than the round-off of a scene file isn't what its author meant
-constexpr double kLargestJointGap = 1e-6;
-
 class Fnv1a {
  public:
   void add(std::uint64_t bits) {

@@ -7,9 +7,8 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kNormalWeight = 10;  // w_n
-constexpr double kFitted = 1e-12;     // of the largest bias: round-off
-constexpr double kRidge = 1e-12;      // relative: motions that no contact sees get none
+constexpr double kFitted = 1e-12;  // of the largest bias: round-off
+constexpr double kRidge = 1e-12;   // relative: motions that no contact sees get none
 
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;

@@ -21,7 +21,8 @@
 
 namespace pincer::engine {
 
-constexpr double kSamePlane = 0.9999;  // cosine of the angle between the normals of contacts of one flat face
+constexpr double kSamePlane = 0.9999;  // cosine of 0.8 degrees between the normals of contacts of one flat face
+constexpr double kNormalWeight = 10;   // w_n, beside 1 of tangential rows: gaps come first
 
 // Of all pairs with two or more sticking contacts in different planes: fits bias_C's tangential rows
 // and offset_C of scratch.contacts (sorted by id), and corrects scratch.q. Likewise of points that

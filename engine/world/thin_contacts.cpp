@@ -7,12 +7,13 @@
 #include <span>
 
 #include "pincer/contact/shape/point_choice.h"
+#include "pincer/engine/world/stick_bias.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr double kOnePlane = 0.9999;  // cosine of the angle between normals; 0.8 degrees
-constexpr double kLevel = 0.0141;  // its tangent: by which points of one plane may be out of level, over their distance
+// the tangent of kSamePlane: by which points of one plane may be out of level, over their distance
+constexpr double kLevel = 0.0141;
 constexpr double kLevelRoundOff = 1e-6;    // [m]: what overlaps by less is level
 constexpr std::size_t kMostThinned = 256;  // of more points nothing is thinned
 
@@ -24,7 +25,7 @@ bool isSameMaterial(const Material& x, const Material& y) {
 
 bool isInOnePlane(const Contact& x, const Contact& y) {
   const Vec3 way = y.p_W - x.p_W;
-  return x.n_W().dot(y.n_W()) > kOnePlane && std::abs(x.n_W().dot(way)) <= kLevel * way.norm() + kLevelRoundOff &&
+  return x.n_W().dot(y.n_W()) > kSamePlane && std::abs(x.n_W().dot(way)) <= kLevel * way.norm() + kLevelRoundOff &&
          isSameMaterial(x.material, y.material);
 }
 
@@ -45,7 +46,6 @@ class PlanePoints {
 
   // Puts first the outermost of the deepest.
   void beginOutside() {
-    constexpr double kAsDeep = 1e-6, kFurther = 1.01;  // [m]; as PointChoice has them
     const double deepest = *std::min_element(gaps_.begin(), gaps_.begin() + static_cast<std::ptrdiff_t>(count_));
     Vec3 mean = Vec3::Zero();
     for (const Vec3& p : points()) mean += p / static_cast<double>(count_);
@@ -53,7 +53,7 @@ class PlanePoints {
     double furthest = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const double distance = n_W_.cross(points_[i] - mean).norm();
-      if (gaps_[i] > deepest + kAsDeep || !(distance > kFurther * furthest)) continue;
+      if (gaps_[i] > deepest + contact::kSameGap || !(distance > contact::kBetter * furthest)) continue;
       furthest = distance;
       outermost = i;
     }

@@ -22,7 +22,6 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kFarTurn = 0.5;       // of what touches, in one part of a tick [rad]
 constexpr int kMostRevisions = 4;      // of which joint rows are needed, in an attempt
 constexpr int kMostTurningParts = 64;  // that a tick is cut into for that
 constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000;  // multiplications besides the solver's

@@ -10,6 +10,7 @@
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
 #include "pincer/engine/tree/speed_limit.h"
+#include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/fine_course.h"
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/rest.h"
@@ -111,9 +112,6 @@ bool movesAlone(const TreeModel& tree) {
   });
 }
 
-constexpr double kFar = 0.5;   // [rad]: the middle of a part of a tick doesn't show how what turns so far goes
-constexpr double kFast = 0.1;  // [rad]: it does, but stops that press would add energy to what they turn
-
 // True if a hinge, a ball or a link turns by more than `most` in this part of the tick.
 bool turnsBy(double most, const TreeModel& tree, const TreeScratch& s, std::span<const double> u, double h) {
   for (const TreeCoordinate& own : tree.coordinates) {
@@ -131,7 +129,7 @@ bool turnsBy(double most, const TreeModel& tree, const TreeScratch& s, std::span
 bool isWhirledByStops(const TreeModel& tree, const TreeScratch& s, std::span<const double> u, double h) {
   const auto pushes = [](char pressed) { return pressed != 0; };
   return s.touched && !s.course.fine && std::none_of(s.pressed.begin(), s.pressed.end(), pushes) &&
-         turnsBy(kFast, tree, s, u, h);
+         turnsBy(kFastTurn, tree, s, u, h);
 }
 
 // The most that drives at their limits add to a tree's speed in the metric of M.
@@ -237,7 +235,7 @@ void predictTrees(const WorldModel& model, const WorldState& state, WorldScratch
     const std::span<const double> q = treeCoordinates(tree, state), u = treeRates(tree, state);
     predictTree(tree, s.base, push, q, u, scratch.h, s.course);
     std::fill(s.gained.begin(), s.gained.end(), 0.0);
-    s.course.rough = turnsBy(kFar, tree, s, u, scratch.h);
+    s.course.rough = turnsBy(kFarTurn, tree, s, u, scratch.h);
     if (s.course.rough) limitFreeCourse(tree, s.base, push, q, u, scratch.h, s.course);
     s.touched = s.closing = false;
     if (tree.may_touch) moveFreeEnd(tree, s.base, q, u, scratch.h, s.course);
@@ -333,7 +331,7 @@ void advanceTrees(const WorldModel& model, WorldState& state, WorldScratch& scra
 
 bool treesTurnFar(const WorldModel& model, const WorldState& state, const WorldScratch& scratch) {
   for (std::size_t t = 0; t < model.trees.size(); ++t) {
-    if (turnsBy(kFar, model.trees[t], scratch.trees[t], treeRates(model.trees[t], state), scratch.h)) return true;
+    if (turnsBy(kFarTurn, model.trees[t], scratch.trees[t], treeRates(model.trees[t], state), scratch.h)) return true;
   }
   return false;
 }

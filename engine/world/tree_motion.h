@@ -13,6 +13,9 @@
 
 namespace pincer::engine {
 
+// [rad]: of what turns so far in a part of a tick, its middle doesn't show the way
+constexpr double kFarTurn = 0.5;
+
 // All that acts on a tree in this part of the tick but contacts and joints' rows.
 TreePush pushOn(const WorldScratch& scratch, const TreeModel& tree, const TreeScratch& s);
 

@@ -8,12 +8,11 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/tree/loop_closure.h"
 #include "pincer/engine/tree/tree_inertia.h"
+#include "pincer/engine/world/joints.h"
 #include "pincer/engine/world/tree_motion.h"
 
 namespace pincer::engine {
 namespace {
-
-constexpr double kLargestMiss = 1e-6;  // of what follows another coordinate, at the start [m, rad]
 
 TreeBase baseOfTree(const WorldModel& model, const WorldState& state, const TreeModel& tree) {
   if (tree.base < 0) return {};
@@ -109,7 +108,7 @@ class TreeReader {
   }
 
   void checkFollows(const TreeCoordinate& own, std::span<const double> q, std::span<const double> follows) const {
-    if (own.q < 0 || std::abs(q[own.q] - follows[own.q]) <= kLargestMiss) return;
+    if (own.q < 0 || std::abs(q[own.q] - follows[own.q]) <= kLargestJointGap) return;
     throw InputError(
         fmt::format("the joint of body \"{}\": it starts at {:g}, and where the joint that it follows starts it must "
                     "be at {:g}. Start both where "

@@ -14,8 +14,6 @@ namespace {
 
 using engine::SideKind;
 
-constexpr double kEndless = std::numeric_limits<double>::infinity();  // radius of a half-space
-
 // One finger, in the middle of the tick, in front of all bodies.
 class FingerLook {
  public:
@@ -73,8 +71,8 @@ class FingerLook {
     const int number = static_cast<int>(&place.collider - model_.world.colliders.data());
     const contact::Shape& shape = feltShape(model_, number);
     if (!isWithinReach(centre_W, bounding_radius)) {
-      const double bound = bounding_radius < kEndless ? (p_WC - centre_W).norm() - bounding_radius - f_.radius
-                                                      : contact::lowerBoundOfGap(shape, p_SC, f_.radius);
+      const double bound = bounding_radius < kInfinity ? (p_WC - centre_W).norm() - bounding_radius - f_.radius
+                                                       : contact::lowerBoundOfGap(shape, p_SC, f_.radius);
       if (bound > f_.reach && isBeyondMargin(bound, place.mid)) {
         nearest_.gap = std::min(nearest_.gap, bound);
         return;
@@ -102,7 +100,7 @@ class FingerLook {
   // Without a root: of what fingers hold, as a rule, the bounding sphere is.
   bool isWithinReach(const Vec3& centre_W, double bounding_radius) const {
     const double distance = f_.reach + bounding_radius + f_.radius;
-    return distance < kEndless && (point_.p_mid_W - centre_W).squaredNorm() <= distance * distance;
+    return distance < kInfinity && (point_.p_mid_W - centre_W).squaredNorm() <= distance * distance;
   }
 
   // A gap that closes within the tick must be seen at its middle.
