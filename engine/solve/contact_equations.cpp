@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "pincer/engine/solve/inverse3.h"
 #include "pincer/engine/solve/linear.h"
@@ -78,11 +79,13 @@ int nodeOf(const SolverScratch& scratch, const ContactSide& side) {
 EquationForm chooseForm(const ContactProblem& problem, SolverScratch& scratch) {
   const int n = problem.contactCount();
   const int nodes = numberMovers(problem, scratch.node.data());
-  if (n <= scratch.dense_contacts && kMoverFreedoms * nodes >= problem.rowCount()) return EquationForm::kContacts;
+  const bool may_be_dense = n <= scratch.dense_contacts;
+  if (may_be_dense && kMoverFreedoms * nodes >= problem.rowCount()) return EquationForm::kContacts;
   connectMovers(
       problem, nodes, [&](const ContactSide& side) { return nodeOf(scratch, side); }, scratch.lu);
-  if (scratch.lu.order(kFewProducts)) return EquationForm::kMovers;
-  return n <= scratch.dense_contacts ? EquationForm::kContacts : EquationForm::kTooLarge;
+  const int most = may_be_dense ? kFewProducts : std::numeric_limits<int>::max();  // there is no other form
+  if (scratch.lu.order(most)) return EquationForm::kMovers;
+  return may_be_dense ? EquationForm::kContacts : EquationForm::kTooLarge;
 }
 
 ContactEquations::ContactEquations(const ScaledProblem& problem, EquationForm form, SolverScratch& scratch)

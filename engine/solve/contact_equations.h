@@ -16,7 +16,8 @@
 
 namespace pincer::engine {
 
-// From which way the equations of `problem` are to be solved; fills scratch's structure of movers.
+// From which way the equations of `problem` are to be solved; fills scratch's structure of movers. Too large: there is
+// no memory for either.
 enum class EquationForm : unsigned char { kContacts, kMovers, kTooLarge };
 EquationForm chooseForm(const ContactProblem& problem, SolverScratch& scratch);
 

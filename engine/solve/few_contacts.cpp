@@ -282,6 +282,11 @@ void solveFewContacts(const ContactProblem& problem, const SolverOptions& option
                       double* r, double* u, SolveResult& result) {
   PINCER_ASSERT(problem.contactCount() <= kFewContacts);
   const EquationForm form = chooseForm(problem, scratch);
+  if (form == EquationForm::kTooLarge) {
+    result.method = SolveMethod::kNotConverged;
+    result.converged = false;
+    return;
+  }
   FewSearch search(problem, form, scratch, r, u, start);
   SolveMethod method = SolveMethod::kNewton;
   if (start <= options.tolerance)

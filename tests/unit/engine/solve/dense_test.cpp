@@ -59,6 +59,16 @@ TEST(DenseProblem, ThatIsNearlySemiDefiniteIsRefined) {
   EXPECT_LE(solveAsMatrix(p).natural_map, 1e-8);
 }
 
+// Fifty contacts that all see each other: too many for a matrix of contacts, and their factors were written beyond
+// their memory.
+TEST(DenseProblem, OfFiftyContactsIsSolvedWithinItsMemory) {
+  RandomScenes random(8);
+  const Eigen::MatrixXd A = Eigen::MatrixXd::NullaryExpr(150, 150, [&](auto, auto) { return random.uniform(-1, 1); });
+  const Eigen::VectorXd q = Eigen::VectorXd::NullaryExpr(150, [&](auto) { return random.uniform(-1, 1); });
+  const DenseAnswer answer = solveDense({A * A.transpose() / 150, q, std::vector<double>(50, 0.5)}, kToRoundOff);
+  EXPECT_LE(answer.natural_map, 1e-8);
+}
+
 TEST(DenseProblem, SaysWhatIsWrongWithIt) {
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(3, 3);
   const Eigen::VectorXd q = -Eigen::VectorXd::Ones(3);

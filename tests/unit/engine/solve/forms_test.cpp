@@ -181,5 +181,39 @@ TEST(EquationForms, SweepWhatIsTooLarge) {
   EXPECT_LE(s.r.dot(p.q + 0.5 * (p.W * s.r)), 1e-12);
 }
 
+// Contacts of a long rope on the floor: each with all of its blocks. Without memory for the factors they are swept.
+TEST(EquationForms, SweepFiftyContactsOfTwentyFiveBlocksEach) {
+  constexpr int kContacts = 50, kMovers = 25, kRows = 3 * kContacts;
+  RandomScenes random(37);
+  std::vector<ContactSide> sides;
+  std::vector<int> first_side{0}, first_row{0};
+  Eigen::MatrixXd A(kRows, kMoverFreedoms * kMovers);
+  for (int i = 0; i < kContacts; ++i) {
+    for (int b = 0; b < kMovers; ++b) {
+      ContactSide& side = sides.emplace_back(ContactSide{.mover = b, .is_point = false, .A = {}});
+      for (int k = 0; k < 3; ++k) {
+        for (int j = 0; j < kMoverFreedoms; ++j)
+          A(3 * i + k, kMoverFreedoms * b + j) = side.A[k][j] = random.uniform(-1, 1);
+      }
+    }
+    first_side.push_back(static_cast<int>(sides.size()));
+    first_row.push_back(3 * (i + 1));
+  }
+  const std::vector<double> mu(kContacts, 0.5);
+  Eigen::VectorXd q = Eigen::VectorXd::NullaryExpr(kRows, [&](auto) { return random.uniform(-1, 1); }), r = 0 * q,
+                  u = r;
+  const ContactProblem problem{.first_row = first_row,
+                               .mu = mu,
+                               .sides = sides,
+                               .q = VectorMap(q.data(), kRows),
+                               .movers = kMovers,
+                               .first_side = first_side};
+  SolverScratch scratch(solverSize(kContacts, kMovers, kMovers));
+  const SolveResult result = solveContacts(problem, {}, scratch, {r.data(), kRows}, {u.data(), kRows});
+  EXPECT_GE(result.method, SolveMethod::kSweeps);
+  EXPECT_LE((A * (A.transpose() * r) + q - u).cwiseAbs().maxCoeff(), 1e-12 * r.norm());
+  EXPECT_LE(r.dot(q + 0.5 * (A * (A.transpose() * r))), 1e-12);
+}
+
 }  // namespace
 }  // namespace pincer::engine
