@@ -20,7 +20,7 @@ namespace pincer::engine {
 namespace {
 
 constexpr int kSettlingTicks = 24;  // stick offsets halve per tick: from the tolerance to round-off
-// the same of bodies that ring on the springs of flat pads, by 5 % per tick, and of links whose drives relax
+// the same of bodies that ring on the springs of fingers, by 5 % less per tick, and of links whose drives relax
 constexpr int kRingingTicks = 240;
 
 // The number of what moves there in IslandScratch's arrays per mover; -1 for what doesn't.
@@ -201,16 +201,15 @@ int countRows(const WorldScratch& scratch) {
 // in a tick, kept, would turn it round and move it off.
 // Of links the number never grows while warm starts stay within the tolerance: drives push by the round-off of their
 // coordinates, so that no exact one lasts, and at most so many ticks take iterations for that alone.
-int nextSettling(const Island& island, bool on_pads, double tolerance) {
-  if (!(island.result.start <= tolerance)) return on_pads || island.holds_trees ? kRingingTicks : kSettlingTicks;
+int nextSettling(const Island& island, bool by_fingers, double tolerance) {
+  if (!(island.result.start <= tolerance)) return by_fingers || island.holds_trees ? kRingingTicks : kSettlingTicks;
   if (island.result.method != SolveMethod::kWarmStart) return island.settling - 1;
   if (island.holds_trees) return std::min(island.settling, kSettlingTicks);
   return island.settling > 0 ? kSettlingTicks : 0;
 }
 
-// True if fingertips hold with more contacts than one each, as pads do.
-bool isHeldByPads(const IslandScratch& s, const Island& island, const WorldScratch& scratch) {
-  if (island.contacts > kFewContacts || island.contacts <= island.movers) return false;
+bool isHeldByFingers(const IslandScratch& s, const Island& island, const WorldScratch& scratch) {
+  if (island.contacts > kFewContacts) return false;
   const int* const order = s.order.data() + island.place;
   return std::any_of(order, order + island.contacts,
                      [&](int i) { return scratch.contacts[i].a.kind == SideKind::kPoint; });
@@ -225,7 +224,7 @@ double restSpeed(const Island& island, const WorldOptions& options) {
 }
 
 void scatter(const IslandScratch& s, const Island& island, const WorldModel& model, WorldScratch& scratch) {
-  const int settling = nextSettling(island, isHeldByPads(s, island, scratch), model.options.solver.tolerance);
+  const int settling = nextSettling(island, isHeldByFingers(s, island, scratch), model.options.solver.tolerance);
   const double rest_speed = island.result.method == SolveMethod::kWarmStart ? restSpeed(island, model.options) : 0;
   const int *const order = s.order.data() + island.place, *const from_row = scratch.first_row.data();
   Contact* const contacts = scratch.contacts.data();

@@ -125,5 +125,18 @@ TEST(PadFriction, AHeldBoxComesToRest) {
   }
 }
 
+// With one contact per pad it did so for ever, at 1e-10 m/s, and crept by that.
+TEST(PadFriction, ANudgedBallBetweenSoftPadsComesToRest) {
+  for (const double stiffness : {1000.0, 5000.0}) {
+    HeldBox held(0.004, stiffness, contact::Sphere{0.015},
+                 {{Quat::Identity(), Vec3(0, 0, 0.1)}, Vec3::Zero(), Vec3(0.2, -0.1, 0.2)});
+    for (int i = 0; i < 2000; ++i) held.tick();
+    int iterations = 0;
+    for (int i = 0; i < 1000; ++i) iterations += held.tick();
+    EXPECT_EQ(iterations, 0) << stiffness;
+    EXPECT_EQ(held.state.world.bodies[0].v_W, Vec3(Vec3::Zero())) << stiffness;
+  }
+}
+
 }  // namespace
 }  // namespace pincer::grasp
