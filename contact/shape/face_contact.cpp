@@ -5,8 +5,8 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/shape/facet_overlap.h"
-#include "pincer/contact/shape/point_choice.h"
 #include "pincer/contact/shape/tolerances.h"
+#include "pincer/contact/surface/vec_pair.h"
 
 namespace pincer::contact {
 namespace {
@@ -45,49 +45,77 @@ class OverFace {
   // The corners nearer than the margin, of a polygon within the base.
   void takeCorners(bool are_of_a, double margin, PairPoints& out) const {
     const double rounding = roundingOf(over_solid_), base_rounding = roundingOf(base_solid_);
-    const Vec3 n = are_of_a ? n_ : Vec3(-n_);
-    for (int i = 0; i < over_.count; ++i) {
-      const FacetCorner& corner = over_.corners[static_cast<std::size_t>(i)];
-      const double height = heights_[static_cast<std::size_t>(i)], phi = height - rounding - base_rounding;
+    const double sign = are_of_a ? 1 : -1;
+    const std::array<std::size_t, kMostCorners> order = cornersByName();
+    for (int k = 0; k < over_.count; ++k) {
+      const std::size_t i = order[static_cast<std::size_t>(k)];
+      const double height = heights_[i], phi = height - rounding - base_rounding;
       if (!(phi < margin)) continue;
-      const Vec3 p = places_[static_cast<std::size_t>(i)] - 0.5 * (height + rounding - base_rounding) * n_;
-      out.points[static_cast<std::size_t>(out.count++)] = {p, n, phi, featureOfCorner(are_of_a, corner.vertex)};
+      PairPoint& point = out.points[static_cast<std::size_t>(out.count++)];
+      point.p_W = places_[i] - 0.5 * (height + rounding - base_rounding) * n_;
+      point.n_W = sign * n_;
+      point.phi = phi;
+      point.feature = featureOfCorner(are_of_a, over_.corners[i].vertex);
     }
-    std::sort(out.points.begin(), out.points.begin() + out.count,
-              [](const PairPoint& x, const PairPoint& y) { return x.feature < y.feature; });
   }
 
  private:
+  // Which sorts their features, too.
+  std::array<std::size_t, kMostCorners> cornersByName() const {
+    std::array<std::size_t, kMostCorners> order;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(over_.count); ++i) {
+      std::size_t at = i;
+      for (; at > 0 && over_.corners[i].vertex < over_.corners[order[at - 1]].vertex; --at) order[at] = order[at - 1];
+      order[at] = i;
+    }
+    return order;
+  }
+
   bool isLowest(double height, double size) const { return lowest_ > 0 && height - lowest_ <= kGapRounding * size; }
 
   // In the base's frame.
   Vec3 seen(const Vec3& p) const { return base_solid_.inwards(p - base_solid_.p); }
 
-  // Which corners are over the base; edge by edge, each of which is measured once. Number by number: a sixteenth of
-  // a pad's look is one corner and one edge.
-  void noteInside() {
-    const int count = over_.count;
-    std::array<bool, Facet::kMost> is_inside;
-    std::fill(is_inside.begin(), is_inside.begin() + count, true);
+  // Of the base's outline, both in its frame.
+  struct Edge {
+    Vec3 from, inwards;
+  };
+  void listEdges(std::array<Edge, Facet::kMost>& edges) const {
     const Vec3& n = base_.n;
     const Vec3* from = &base_.corners[static_cast<std::size_t>(base_.count - 1)].p;
     for (int k = 0; k < base_.count; ++k) {
       const Vec3& to = base_.corners[static_cast<std::size_t>(k)].p;
-      const double fx = from->x(), fy = from->y(), fz = from->z();
-      const double ex = to.x() - fx, ey = to.y() - fy, ez = to.z() - fz;
-      const double ix = n.y() * ez - n.z() * ey, iy = n.z() * ex - n.x() * ez, iz = n.x() * ey - n.y() * ex;
-      for (int i = 0; i < count; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const Vec3& c = seen_[at];
-        is_inside[at] &= (ix * (c.x() - fx) + iy * (c.y() - fy)) + iz * (c.z() - fz) >= 0;
-      }
+      const double x = to.x() - from->x(), y = to.y() - from->y(), z = to.z() - from->z();
+      Vec3& inwards = edges[static_cast<std::size_t>(k)].inwards;
+      inwards[0] = n.y() * z - n.z() * y;
+      inwards[1] = n.z() * x - n.x() * z;
+      inwards[2] = n.x() * y - n.y() * x;
+      edges[static_cast<std::size_t>(k)].from = *from;
       from = &to;
     }
-    for (int i = 0; i < count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (is_inside[at]) lowest_inside_ = std::min(lowest_inside_, heights_[at]);
-      all_inside_ = all_inside_ && is_inside[at];
+  }
+
+  // Which corners are over the base: two at a time, an eighth of a pad's look is two corners and one edge.
+  void noteInside() {
+    std::array<Edge, Facet::kMost> edges;
+    listEdges(edges);
+    const std::size_t count = static_cast<std::size_t>(over_.count);
+    for (std::size_t i = 0; i < count; i += 2) {
+      const std::size_t second = std::min(i + 1, count - 1);
+      const Vec3 &a = seen_[i], &b = seen_[second];
+      const Two x{a.x(), b.x()}, y{a.y(), b.y()}, z{a.z(), b.z()};
+      auto inside = x == x;
+      for (int k = 0; k < base_.count; ++k) {
+        const Vec3 &from = edges[static_cast<std::size_t>(k)].from, &in = edges[static_cast<std::size_t>(k)].inwards;
+        inside &= (in[0] * (x - from[0]) + in[1] * (y - from[1])) + in[2] * (z - from[2]) >= 0;
+      }
+      note(inside[0] != 0, heights_[i]);
+      if (second > i) note(inside[1] != 0, heights_[second]);
     }
+  }
+  void note(bool is_inside, double height) {
+    if (is_inside) lowest_inside_ = std::min(lowest_inside_, height);
+    all_inside_ = all_inside_ && is_inside;
   }
 
   const PosedSolid& base_solid_;

@@ -26,8 +26,8 @@ void add(const SurfaceContact& point, FingerContacts& out) {
 bool isBefore(const PairPoint& x, const PairPoint& y) {
   return x.phi < y.phi || (x.phi == y.phi && x.feature < y.feature);
 }
-// The deepest first; of more than there is room for the deepest.
-FingerContacts contactsOf(const PairPoints& patch) {
+// The deepest first; of more than there is room for the deepest. In place of what `found` holds.
+void takePatch(const PairPoints& patch, FingerContacts& found) {
   std::array<const PairPoint*, kMaxPairPoints> order;
   int sorted = 0;
   for (; sorted < patch.count; ++sorted) {
@@ -36,14 +36,17 @@ FingerContacts contactsOf(const PairPoints& patch) {
     for (; at > 0 && isBefore(*p, *order[at - 1]); --at) order[at] = order[at - 1];
     order[at] = p;
   }
-  FingerContacts found;
   found.queries = 1;
-  const int count = std::min(patch.count, kMaxFingerContacts);
-  for (int i = 0; i < count; ++i) {
-    const PairPoint& p = *order[static_cast<std::size_t>(i)];
-    add({p.p_W - 0.5 * p.phi * p.n_W, p.n_W, p.phi, p.feature}, found);
+  found.count = std::min(patch.count, kMaxFingerContacts);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(found.count); ++i) {
+    const PairPoint& p = *order[i];
+    SurfaceContact& point = found.points[i];  // where it belongs at once
+    point.p_BS = p.p_W - 0.5 * p.phi * p.n_W;
+    point.n_B = p.n_W;
+    point.phi = p.phi;
+    point.feature = p.feature;
+    found.p_BT[i] = point.p_BS + point.phi * point.n_B;
   }
-  return found;
 }
 
 class PadQuery {
@@ -59,35 +62,33 @@ class PadQuery {
         tracker_(tracker),
         cache_(cache) {}
 
-  FingerContacts run() {
-    if (std::holds_alternative<Mesh>(shape_)) return onMesh();
-    FingerContacts found;
-    return touchOnFacets(shape_, finger_, X_BF_, margin_, tracker_, cache_, found) ? found : nearest();
+  // `found` is empty.
+  void run(FingerContacts& found) {
+    if (std::holds_alternative<Mesh>(shape_)) return onMesh(found);
+    if (!touchOnFacets(shape_, finger_, X_BF_, margin_, tracker_, cache_, found)) addNearest(found);
   }
 
  private:
-  FingerContacts nearest() {
+  void addNearest(FingerContacts& found) {
     const CoreDescent deepest = descend(shape_, finger_, X_BF_, margin_, tracker_.main, cache_);
-    FingerContacts out;
-    out.queries = deepest.queries;
-    for (int i = 0; i < deepest.found.count; ++i) add(deepest.found.points[static_cast<std::size_t>(i)], out);
-    return out;
+    found.queries = deepest.queries;
+    for (int i = 0; i < deepest.found.count; ++i) add(deepest.found.points[static_cast<std::size_t>(i)], found);
   }
 
-  FingerContacts onMesh() {
-    FingerContacts found = nearest();
-    if (!(found.main().phi < margin_)) return found;
-    if (FingerContacts line; touchesWall(found.main(), line)) return line;
+  void onMesh(FingerContacts& found) {
+    addNearest(found);
+    if (!(found.main().phi < margin_)) return;
+    PairPoints ends;
+    if (touchesWall(found.main(), ends)) return takePatch(ends, found);
     if (mayBeFlat(found.main())) {
       PairPoints patch;
       padOnShape(pad_, X_BF_, shape_, margin_, Vec3::Zero(), cache_, patch);
-      if (isFlat(patch, found.main())) return contactsOf(patch);
+      if (isFlat(patch, found.main())) return takePatch(patch, found);
     }
     const SurfaceContact main = found.main();
     addFurther(found);
     if (isInsideFacet(main))
       found.wander_B = wanderAt(shape_, main, pad_.rounding, kOnePoint * size_, triedBall(), cache_);
-    return found;
   }
 
   // From an edge or a corner of the pad the place doesn't wander.
@@ -104,7 +105,7 @@ class PadQuery {
 
   // The two ends of the line that a straight wall shares with the facet over it: of the wall, where it ends under the
   // facet, else of the facet. Their gaps are those of the facet's plane. False if there is no such wall.
-  bool touchesWall(const SurfaceContact& main, FingerContacts& line) const {
+  bool touchesWall(const SurfaceContact& main, PairPoints& ends) const {
     const std::int32_t t = slotOf(main).triangle;
     if (t < 0) return false;
     Facet facet;
@@ -122,7 +123,6 @@ class PadQuery {
       if (rate == 0 && inside < 0) return false;
     }
     if (!(high - low > kOnePoint * size_)) return false;
-    PairPoints ends;
     for (const double s : {low, high}) {
       const Vec3 p_BS = main.p_BS + s * wall.along();
       const double phi = n_B.dot(cornerOf(facet, 0) - p_BS) - pad_.rounding;
@@ -130,9 +130,7 @@ class PadQuery {
         ends.points[static_cast<std::size_t>(ends.count++)] = {p_BS + 0.5 * phi * n_B, n_B, phi,
                                                                kFirstEnd + (s == high ? 1u : 0u)};
     }
-    if (ends.count == 0) return false;
-    line = contactsOf(ends);
-    return true;
+    return ends.count > 0;
   }
 
   static bool faces(const Vec3& facet_n_B, const Vec3& n_B) {
@@ -328,7 +326,7 @@ bool touchOnFacets(const Shape& solid, const FingerShape& finger, const Pose& X_
   else
     padOnShape(std::get<PadTip>(finger), X_BF, solid, margin, from_n_B, cache, patch);
   if (patch.count == 0) return false;
-  found = contactsOf(patch);
+  takePatch(patch, found);
   const SurfaceContact& main = found.main();
   last_n_B = main.n_B;
   tracker.main.c_F = X_BF.inverse() * (main.p_BS + (main.phi + roundingOf(finger)) * main.n_B);
@@ -338,7 +336,9 @@ bool touchOnFacets(const Shape& solid, const FingerShape& finger, const Pose& X_
 
 FingerContacts queryPad(const Shape& shape, const FingerShape& finger, const Pose& X_BF, double margin,
                         FingerTracker& tracker, PatchCache& cache) {
-  return PadQuery(shape, finger, X_BF, margin, tracker, cache).run();
+  FingerContacts found;
+  PadQuery(shape, finger, X_BF, margin, tracker, cache).run(found);
+  return found;
 }
 
 }  // namespace pincer::contact

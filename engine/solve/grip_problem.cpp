@@ -43,35 +43,37 @@ class Grip {
 
   void holdWhatPushes() {
     for (int i = 0; i < lanes_; i += 2) {
-      const DoublePair r_n = pairAt(r_[kNormalRow] + i);
-      pairAt(holds_ + i) = DoublePair{r_n[0] > 0 ? 1.0 : 0.0, r_n[1] > 0 ? 1.0 : 0.0};
+      pairAt(holds_ + i) = pairAt(r_[kNormalRow] + i) > 0 ? DoublePair{1, 1} : DoublePair{0, 0};
     }
   }
   // As in stuck_contacts.cpp.
   bool allStayAsTheyAre() const {
-    bool all = true;
+    PairFlags all = kBoth;
     for (int i = 0; i < lanes_; i += 2) {
       const DoublePair w = pairAt(w_ + i), mu = pairAt(mu_ + i), hold = pairAt(holds_ + i);
       const DoublePair x = w * pairAt(r_[0] + i) - pairAt(u_[0] + i), y = w * pairAt(r_[1] + i) - pairAt(u_[1] + i),
                        n = w * pairAt(r_[kNormalRow] + i) - pairAt(u_[kNormalRow] + i), rim = mu * n;
       const auto sticks = (n > 0) & (x * x + y * y <= rim * rim), is_open = n <= 0;
-      all = all && areTrue((hold > 0) ? sticks : (is_open | (pairAt(counts_ + i) == 0)));
+      all &= (hold > 0) ? sticks : (is_open | (pairAt(counts_ + i) == 0));
     }
-    return all;
+    return areTrue(all);
   }
   bool holdsWith(double share) const {
-    bool all = true;
+    PairFlags all = kBoth;
     for (int i = 0; i < lanes_; i += 2) {
       const DoublePair x = pairAt(r_[0] + i), y = pairAt(r_[1] + i), n = pairAt(r_[kNormalRow] + i),
                        rim = share * pairAt(mu_ + i) * n;
-      all = all && areTrue((pairAt(holds_ + i) == 0) | ((n > 0) & (x * x + y * y <= rim * rim)));
+      all &= (pairAt(holds_ + i) == 0) | ((n > 0) & (x * x + y * y <= rim * rim));
     }
-    return all;
+    return areTrue(all);
   }
   bool maySqueeze() const {
-    double largest = 0;
-    for (int i = 0; i < lanes_; ++i) largest = std::max(largest, w_[i] * r_[kNormalRow][i]);
-    return kGripRows * largest > kLargestSqueeze * speed_;
+    DoublePair largest = {};
+    for (int i = 0; i < lanes_; i += 2) {
+      const DoublePair response = pairAt(w_ + i) * pairAt(r_[kNormalRow] + i);
+      largest = response > largest ? response : largest;
+    }
+    return kGripRows * std::max(largest[0], largest[1]) > kLargestSqueeze * speed_;
   }
 
   // A step from r and u. False if there is none.
@@ -181,8 +183,9 @@ class Grip {
     sum.response = response > sum.response ? response : sum.response;
     sum.check += error2 + u[kNormalRow];
   }
-  template <class Flags>
-  static bool areTrue(const Flags& flags) {
+  using PairFlags = decltype(DoublePair{} > DoublePair{});
+  static constexpr PairFlags kBoth = {-1, -1};
+  static bool areTrue(const PairFlags& flags) {
     return (flags[0] & flags[1]) != 0;
   }
 

@@ -44,6 +44,15 @@ class Face {
     return true;
   }
 
+  // As a rule none is, and then nothing else need be known.
+  bool isUsedUp() {
+    bool is_used_up = false;
+    forEachPushing([&](const Contact& c, const double* r, int rows) {
+      const double enough = kUsedUp * c.mu * r[kNormalRow];
+      is_used_up = is_used_up || tangentNorm2(r, rows) > enough * enough;
+    });
+    return is_used_up;
+  }
   // The largest use of friction, squared.
   double used2() {
     double used2 = 0;
@@ -100,9 +109,8 @@ class Face {
 
 void shareOn(std::span<const Contact> contacts, int first, WorldScratch& scratch) {
   Face face(contacts, first, scratch);
-  const double used2 = face.used2();
-  if (!(used2 > kStuckFrictionUsed * kStuckFrictionUsed) || !face.measure()) return;
-  if (face.usedByShares2() < kWorthwhile * kWorthwhile * used2) face.share();
+  if (!face.isUsedUp() || !face.measure()) return;
+  if (face.usedByShares2() < kWorthwhile * kWorthwhile * face.used2()) face.share();
 }
 
 }  // namespace

@@ -87,8 +87,13 @@ class FingerLook {
     contact::FingerTracker& tracker = follower_.of(number);
     if (!f_.shape)
       return follow(contact::querySphere(shape, p_SC, f_.radius, margin, tracker.main.ball, patches), place, margin);
-    const Pose X_WF{scratch_.q_mid_WF[finger_], p_WC}, X_WS = engine::poseOf(place.collider, place.mid.X_WB_mid);
-    follow(contact::queryFinger(shape, *f_.shape, X_WS.inverse() * X_WF, margin, tracker, patches), place, margin);
+    const Pose X_SF{shapeTurn(place).conjugate() * scratch_.q_mid_WF[finger_], p_SC};
+    follow(contact::queryFinger(shape, *f_.shape, X_SF, margin, tracker, patches), place, margin);
+  }
+
+  static Quat shapeTurn(const Place& place) {
+    const Quat& q_WB = place.mid.X_WB_mid.q;
+    return place.collider.is_posed ? q_WB * place.collider.X_BS.q : q_WB;
   }
 
   template <class Found>

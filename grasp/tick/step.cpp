@@ -82,39 +82,36 @@ double momentOfPoints(FingersContacts contacts, const FingerReport& report) {
 // Sums the contacts of one finger into its report; returns the way from its centre to their
 // force-weighted mean place, or its direction.
 Vec3 sumContacts(FingersContacts contacts, const Vec3& p_mid_W, double h, FingerReport& report) {
-  Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero(), tangential_W = Vec3::Zero();
+  Vec3 p_sum = Vec3::Zero(), n_sum = Vec3::Zero(), impulse_W = Vec3::Zero();
   double normal = 0, torsion = 0, largest = 0;  // impulses
   int pushing = 0;
+  const engine::Contact* lead = nullptr;
   for (const engine::Contact& c : contacts) {
     if (!c.active()) continue;
     const double r_n = c.r[engine::kNormalRow];
-    const Vec3 n_W = c.n_W();
     impulse_W += c.impulse_W;
-    tangential_W += c.impulse_W - r_n * n_W;
     normal += r_n;
     if (engine::rowsOf(c.material) > engine::kTorsionRow)
       torsion += c.r[engine::kTorsionRow] * c.material.torsion_radius;
     report.sliding = report.sliding || c.sliding;
     p_sum += r_n * c.p_W;
-    n_sum += r_n * n_W;
+    n_sum += r_n * c.n_W();
     ++pushing;
     if (!(r_n > largest)) continue;
     largest = r_n;
-    report.body = c.b.index;
-    report.p_WC = c.p_W;
-    report.n_W = n_W;
+    lead = &c;
   }
   report.touching = normal > 0;
   if (!report.touching) return Vec3::Zero();
+  report.body = lead->b.index;
   report.f_contact_W = impulse_W / h;
   report.normal_force = normal / h;
-  report.tangential_force = tangential_W.norm() / h;
+  report.tangential_force = (impulse_W - n_sum).norm() / h;
   report.torsion = torsion / h;
-  if (pushing > 1) {
-    report.p_WC = p_sum / normal;
-    if (n_sum.squaredNorm() > 0) report.n_W = n_sum.normalized();
-    report.torsion += momentOfPoints(contacts, report) / h;
-  }
+  const bool is_spread = pushing > 1;
+  report.p_WC = is_spread ? Vec3(p_sum / normal) : lead->p_W;
+  report.n_W = is_spread && n_sum.squaredNorm() > 0 ? Vec3(n_sum.normalized()) : lead->n_W();
+  if (is_spread) report.torsion += momentOfPoints(contacts, report) / h;
   PINCER_ASSERT(isUnitIfFinite(report.n_W) && report.body >= 0);
   const Vec3 to_mean = report.p_WC - p_mid_W;
   return to_mean.squaredNorm() > 0 ? to_mean : Vec3(-report.n_W);
