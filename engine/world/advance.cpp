@@ -1,5 +1,6 @@
 // From impulses to momenta, from momenta to poses.
 #include <algorithm>
+#include <span>
 
 #include "pincer/engine/motion/driven_motion.h"
 #include "pincer/engine/motion/free_motion.h"
@@ -17,31 +18,68 @@
 namespace pincer::engine {
 namespace {
 
-void push(const Vec3& impulse_W, const Contact& c, MoverScratch& mover) {
-  mover.impulse_W += impulse_W;
-  mover.rest_speed = mover.touched ? std::min(mover.rest_speed, c.rest_speed) : c.rest_speed;
-  mover.touched = true;
-  mover.closing = mover.closing || c.closing;
+// About p_W, of torsion and rolling friction.
+Vec3 momentOf(const Contact& c, int rows) {
+  Vec3 moment_W = Vec3::Zero();
+  for (int k = kTorsionRow; k < rows; ++k) moment_W += (radiusOf(c, k) * c.r[k]) * axisOf(c, k);
+  return moment_W;
 }
 
-Vec3 turnBy(const Vec3& arm_W, const Vec3& impulse_W, const Vec3* moment_W) {
-  const Vec3 moment = arm_W.cross(impulse_W);
-  return moment_W ? Vec3(moment + *moment_W) : moment;
-}
-
-// moment_W  besides that of the impulse; null for none
-void applyImpulse(WorldScratch& scratch, const Side& side, const Vec3& arm_W, const Vec3& impulse_W,
-                  const Vec3* moment_W, const Contact& c) {
-  if (side.kind == SideKind::kPoint) {
-    PointScratch& point = scratch.points[side.index];
-    if (moment_W) point.twist_impulse += moment_W->dot(c.n_W());
-    if (point.inverse_turn > 0) point.turn_impulse_W += turnBy(arm_W, impulse_W, moment_W);
-    return push(impulse_W, c, point);
+// Adds the moment of `f` at arm, and of the contact's own.
+void addMoment(const Contact& c, double sign, const Vec3& arm, const double (&f)[3], double (&sum)[3]) {
+  double moment[3];
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    moment[i] = arm[j] * f[k] - arm[k] * f[j];
   }
-  if (side.kind == SideKind::kJoint) return push(impulse_W, c, scratch.joint_rows[side.index]);
-  BodyScratch& body = scratch.bodies[side.index];
-  push(impulse_W, c, body);
-  body.angular_impulse_W += turnBy(arm_W, impulse_W, moment_W);
+  if (const int rows = rowsOf(c.material); rows > kTorsionRow) {
+    const Vec3 own_W = sign * momentOf(c, rows);
+    for (int i = 0; i < 3; ++i) moment[i] += own_W[i];
+  }
+  for (int i = 0; i < 3; ++i) sum[i] += moment[i];
+}
+
+// The pushes of contacts of the same two on one of them, in their order and number by number: four corners of a pad
+// would each wait for the sum that the one before has just stored.
+//   turn_W  moment about the mover's centre; not read of what doesn't turn by it
+template <bool turns>
+void gatherPushes(std::span<const Contact> contacts, bool is_a, Vec3* turn_W, MoverScratch& mover) {
+  const double sign = is_a ? 1 : -1;
+  double sum[3], turn[3];
+  for (int i = 0; i < 3; ++i) sum[i] = mover.impulse_W[i];
+  for (int i = 0; turns && i < 3; ++i) turn[i] = (*turn_W)[i];
+  for (const Contact& c : contacts) {
+    if (!c.active()) continue;
+    mover.rest_speed = mover.touched ? std::min(mover.rest_speed, c.rest_speed) : c.rest_speed;
+    mover.touched = true;
+    mover.closing = mover.closing || c.closing;
+    const double f[3] = {sign * c.impulse_W[0], sign * c.impulse_W[1], sign * c.impulse_W[2]};
+    for (int i = 0; i < 3; ++i) sum[i] += f[i];
+    if constexpr (turns) addMoment(c, sign, is_a ? c.arm_a_W : c.arm_b_W, f, turn);
+  }
+  for (int i = 0; i < 3; ++i) mover.impulse_W[i] = sum[i];
+  for (int i = 0; turns && i < 3; ++i) (*turn_W)[i] = turn[i];
+}
+
+void gatherTwist(std::span<const Contact> contacts, bool is_a, PointScratch& point) {
+  for (const Contact& c : contacts) {
+    const int rows = rowsOf(c.material);
+    if (c.active() && rows > kTorsionRow) point.twist_impulse += (is_a ? 1 : -1) * momentOf(c, rows).dot(c.n_W());
+  }
+}
+
+void gatherPushes(std::span<const Contact> contacts, bool is_a, WorldScratch& scratch) {
+  const Side& side = is_a ? contacts.front().a : contacts.front().b;
+  if (side.kind == SideKind::kBody) {
+    BodyScratch& body = scratch.bodies[side.index];
+    return gatherPushes<true>(contacts, is_a, &body.angular_impulse_W, body);
+  }
+  if (side.kind == SideKind::kJoint)
+    return gatherPushes<false>(contacts, is_a, nullptr, scratch.joint_rows[side.index]);
+  PointScratch& point = scratch.points[side.index];
+  gatherTwist(contacts, is_a, point);
+  if (point.inverse_turn > 0) return gatherPushes<true>(contacts, is_a, &point.turn_impulse_W, point);
+  gatherPushes<false>(contacts, is_a, nullptr, point);
 }
 
 void rest(MoverScratch& mover) {
@@ -105,19 +143,11 @@ void gatherImpulses(const WorldModel& model, WorldScratch& scratch) {
     point.twist_impulse = 0;
     if (point.inverse_turn > 0) point.turn_impulse_W.setZero();
   }
-  for (Contact& c : scratch.contacts) {
-    if (!c.active()) continue;
-    const int rows = rowsOf(c.material);
-    if (rows == kTorsionRow) {
-      applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, nullptr, c);
-      applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, nullptr, c);
-      continue;
-    }
-    Vec3 moment_W = Vec3::Zero();
-    for (int k = kTorsionRow; k < rows; ++k) moment_W += (radiusOf(c, k) * c.r[k]) * axisOf(c, k);
-    applyImpulse(scratch, c.a, c.arm_a_W, c.impulse_W, &moment_W, c);
-    moment_W = -moment_W;
-    applyImpulse(scratch, c.b, c.arm_b_W, -c.impulse_W, &moment_W, c);
+  const std::span<const Contact> contacts = scratch.contacts;
+  for (std::size_t first = 0, end = 0; first < contacts.size(); first = end) {
+    for (end = first + 1; end < contacts.size() && isOfSameTwo(contacts[first], contacts[end]);) ++end;
+    gatherPushes(contacts.subspan(first, end - first), true, scratch);
+    gatherPushes(contacts.subspan(first, end - first), false, scratch);
   }
   if (model.has_hollows) resistRocking(scratch);
   if (scratch.h > 0) spreadClosing(model, scratch);
