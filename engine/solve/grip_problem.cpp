@@ -185,9 +185,7 @@ class Grip {
   }
   using PairFlags = decltype(DoublePair{} > DoublePair{});
   static constexpr PairFlags kBoth = {-1, -1};
-  static bool areTrue(const PairFlags& flags) {
-    return (flags[0] & flags[1]) != 0;
-  }
+  static bool areTrue(const PairFlags& flags) { return (flags[0] & flags[1]) != 0; }
 
   // The mean of W_ii's diagonal: of its three rows the trace, whatever their axes.
   void weigh() {

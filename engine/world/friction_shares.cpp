@@ -48,7 +48,7 @@ class Face {
   bool isUsedUp() {
     bool is_used_up = false;
     forEachPushing([&](const Contact& c, const double* r, int rows) {
-      const double enough = kUsedUp * c.mu * r[kNormalRow];
+      const double enough = kStuckFrictionUsed * c.mu * r[kNormalRow];
       is_used_up = is_used_up || tangentNorm2(r, rows) > enough * enough;
     });
     return is_used_up;
