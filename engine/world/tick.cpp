@@ -164,12 +164,14 @@ class Tick {
       t = scratch_.impact_pairs.empty() ? h : timeOfImpact(model_, state_, scratch_);
     }
     if (!(t < h)) return finish(h);
+    const bool lands = somethingLands();
     if (t > kShortestPart * model_.options.h) {
       t = cutAt(t);
       conclude();
       left_ -= t;
     }
-    landings_ += somethingLands();
+    // A part that is cut so short that nothing is held back any more has landed it.
+    landings_ += scratch_.impact_pairs.empty() ? lands : somethingLands();
     const double energy = isLimited(scratch_) ? energyOf(model_, state_, scratch_.gravity_W) : 0;
     const bool is_heap = scratch_.contacts.size() > kHeap;
     wakeAll(scratch_);
