@@ -1,9 +1,11 @@
 // Impacts inside the tick: restitution, friction, the end of bouncing, tunnelling, energy.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "pincer/contact/polytope.h"
 #include "pincer/engine/step.h"
 #include "pincer/tests/support/allocation_guard.h"
 #include "pincer/tests/support/constants.h"
@@ -291,6 +293,30 @@ TEST(Impact, RockingBlockLandsWithinTheTickToSecondOrder) {
   RecordProperty("fine", std::to_string(fine));
   EXPECT_LT(coarse, 4e-3);
   EXPECT_LT(fine, 3e-4);
+}
+
+// A prism that came down on its corners cut the tick up to 16 times: what landed in a part that was cut short didn't
+// count as one of its two landings.
+TEST(Impact, APrismLandsAtMostTwiceInATick) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 16; ++i) {
+    const double angle = 0.25 * tests::kPi * (i / 2);
+    corners.emplace_back(0.02 * std::cos(angle), 0.02 * std::sin(angle), i % 2 ? 0.012 : -0.012);
+  }
+  WorldBuilder builder{WorldOptions{}};
+  builder.addBody({"dish", contact::Dish{0.3}, false, 0, {0.5, 0.5}});
+  builder.addBody({"prism", contact::Convex{contact::Polytope::hullOf(corners, "prism")}, true, 0.05, {0.5, 0.5}});
+  const WorldModel model = builder.build();
+  int most_parts = 0;
+  for (int n = 1; n < 8; ++n) {
+    const BodyStart prism{{quatFromRotationVector(Vec3(0.003 * n, 0.01 * n, 0.1 * n)), Vec3(0.001 * n, 0, 0.02)},
+                          Vec3(0.01 * n, 0, -0.1),
+                          Vec3(0.3 * (n % 5), 0.2 * (n % 3), n % 4)};
+    WorldState state = makeState(model, {startAt(Vec3::Zero()), prism}, {});
+    WorldScratch scratch(model);
+    for (int tick = 0; tick < 80; ++tick) most_parts = std::max(most_parts, step(model, state, scratch).parts);
+  }
+  EXPECT_EQ(most_parts, 3);
 }
 
 TEST(Impact, AllocatesNothing) {
