@@ -5,6 +5,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/shape/facet_overlap.h"
+#include "pincer/contact/shape/point_choice.h"
 #include "pincer/contact/shape/tolerances.h"
 #include "pincer/contact/surface/vec_pair.h"
 
@@ -46,7 +47,7 @@ class OverFace {
   void takeCorners(bool are_of_a, double margin, PairPoints& out) const {
     const double rounding = roundingOf(over_solid_), base_rounding = roundingOf(base_solid_);
     const double sign = are_of_a ? 1 : -1;
-    const std::array<std::size_t, kMostCorners> order = cornersByName();
+    const std::array<std::size_t, kMaxChosen> order = cornersByName();
     for (int k = 0; k < over_.count; ++k) {
       const std::size_t i = order[static_cast<std::size_t>(k)];
       const double height = heights_[i], phi = height - rounding - base_rounding;
@@ -61,8 +62,8 @@ class OverFace {
 
  private:
   // Which sorts their features, too.
-  std::array<std::size_t, kMostCorners> cornersByName() const {
-    std::array<std::size_t, kMostCorners> order;
+  std::array<std::size_t, kMaxChosen> cornersByName() const {
+    std::array<std::size_t, kMaxChosen> order;
     for (std::size_t i = 0; i < static_cast<std::size_t>(over_.count); ++i) {
       std::size_t at = i;
       for (; at > 0 && over_.corners[i].vertex < over_.corners[order[at - 1]].vertex; --at) order[at] = order[at - 1];

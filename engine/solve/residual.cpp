@@ -74,4 +74,13 @@ bool isGoodStart(const ContactProblem& problem, const SolverOptions& options, co
          (!problem.strict || start.residual <= exactResidual(options.tolerance, problem.noise, speed));
 }
 
+double fastestSlip(const ContactProblem& problem, const double* r, const double* u) {
+  double fastest2 = 0;
+  for (int i = 0; i < problem.contactCount(); ++i) {
+    const int first = problem.firstRow(i);
+    if (r[first + kNormalRow] > 0) fastest2 = std::max(fastest2, tangentNorm2(u + first, problem.rows(i)));
+  }
+  return std::sqrt(fastest2);
+}
+
 }  // namespace pincer::engine

@@ -85,4 +85,7 @@ inline double exactResidual(double tolerance, double noise, double speed) {
 //   speed  of the problem, referenceSpeed
 bool isGoodStart(const ContactProblem& problem, const SolverOptions& options, const ContactError& start, double speed);
 
+// The fastest slip of what pushes [m/s].
+double fastestSlip(const ContactProblem& problem, const double* r, const double* u);
+
 }  // namespace pincer::engine

@@ -23,6 +23,8 @@ constexpr double kFirstDescent = 1e-2;              // epsilon of descents, at m
 constexpr double kRough = 1e-2, kMostlyGive = 0.3;  // a descent's error, of its start's; a give, of its error
 constexpr int kMostRoundSteps = 8, kDescents = 6, kMostDescentSteps = 30;  // of a round; at a time; of one
 constexpr double kShareOfSlip = 3e-4;  // of what pushes: below it, in motion, errors don't show
+constexpr double kShareOfSlow = 0.1;   // of that slip: what is more would keep it from rest, however loose the accuracy
+constexpr double kSwept = 3e-4;        // of the problem's speeds: an error that sweeps reach for less than steps
 constexpr int kSweepsAtATime = 16;     // they cost two steps
 
 constexpr int kProductsPerRoundContact = 3;             // a row of balls in a groove takes one
@@ -41,16 +43,6 @@ struct Pace {
   double still_fading, far;  // of an error or a give, from time to time; from which rounds rather fail [m/s]
 };
 constexpr Pace kAtRest{0.2, 5, 3, 0.7, 1e-3}, kInMotion{0.4, 10, 2, 0.5, 3e-4};
-
-// The fastest slip of what pushes [m/s].
-double fastestSlip(const ContactProblem& problem, const double* r, const double* u) {
-  double fastest2 = 0;
-  for (int i = 0; i < problem.contactCount(); ++i) {
-    const int first = problem.firstRow(i);
-    if (r[first + kNormalRow] > 0) fastest2 = std::max(fastest2, tangentNorm2(u + first, problem.rows(i)));
-  }
-  return std::sqrt(fastest2);
-}
 
 class Search {
  public:
@@ -101,10 +93,12 @@ class Search {
            (!problem_.strict ||
             error_.residual <= exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_)));
   }
+  // A looser accuracy than the default doesn't keep what is slow from rest [m/s].
+  double finest() const { return std::min(options_.accuracy, SolverOptions{}.accuracy); }
   // Error that is small enough [m/s].
   double limit() const {
     if (problem_.contactCount() <= kFewContacts || options_.accuracy == 0) return restErrorOf(options_);
-    return std::max(kShareOfSlip * slip_, options_.accuracy);
+    return std::max(kShareOfSlip * slip_, std::clamp(kShareOfSlow * slip_, finest(), options_.accuracy));
   }
   // Of a round's own, at most [m/s].
   double left() const { return kLeft * std::max(limit(), options_.tolerance * referenceSpeed(problem_)); }
@@ -181,12 +175,14 @@ class Search {
   bool isFar() const { return best_.speed > pace().far; }
   bool moves() const { return options_.accuracy > 0 && slip_ > kMotion * options_.accuracy; }
   bool slides() const { return options_.accuracy > 0 && slip_ > kSliding * options_.accuracy; }
+  bool isWithinReachOfSweeps() const { return limit() > kSwept * referenceSpeed(problem_); }
   const Pace& pace() const { return moves() ? kInMotion : kAtRest; }
 
-  // To where rounds succeed: what slides by sweeps, as long as they get on; then by descents.
+  // To where rounds succeed: what slides, or needn't be exact, by sweeps, as long as they get on; then by descents.
   void approach(ProximalRound& round) {
     double before = std::numeric_limits<double>::infinity();
-    while (slides() && isFar() && best_.speed < pace().still_fading * before && !isSpent()) {
+    const auto is_for_sweeps = [&] { return (slides() && isFar()) || (isWithinReachOfSweeps() && !isEnough()); };
+    while (is_for_sweeps() && best_.speed < pace().still_fading * before && !isSpent()) {
       before = best_.speed;
       smooth();
     }
@@ -347,7 +343,8 @@ class Search {
   }
 
   void sweep() {
-    const double content = problem_.contactCount() <= kFewContacts ? limit() : kMostAccuracies * options_.accuracy;
+    const double many = std::max(kMostAccuracies * finest(), std::min(limit(), options_.accuracy));
+    const double content = problem_.contactCount() <= kFewContacts ? limit() : many;
     const double enough = std::max(content, options_.tolerance * referenceSpeed(problem_));
     respond(problem_, scratch_.best_r.data(), scratch_);
     error_ = respondedError(problem_, scratch_.best_r.data(), scratch_, scratch_.best_u.data());

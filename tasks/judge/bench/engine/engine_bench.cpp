@@ -93,7 +93,8 @@ std::vector<Measurement> engineMeasurements(const EngineBenchOptions& options) {
   measurements.push_back(stepLatencyMeasurement(contestants));
   measurements.push_back(solveLatencyMeasurement(options.race.rounds));
   measurements.push_back(sleepMeasurement(options.race.rounds));
-  for (Measurement& family : familyMeasurements(options.whole, options.peers)) measurements.push_back(std::move(family));
+  for (Measurement& family : familyMeasurements(options.whole, options.peers))
+    measurements.push_back(std::move(family));
   return measurements;
 }
 

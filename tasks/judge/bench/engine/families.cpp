@@ -227,6 +227,15 @@ std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
       "heaps/balls-100", [] { return ballWorld(100, 5, 1); }, 2);
   heap(
       "hulls/50", [] { return hullWorld(50, 1); }, whole ? 3 : 1.5);
+  for (const double accuracy : {1e-4, 1e-3, 1e-2})  // the dial
+    heap(
+        fmt::format("hulls/50-accuracy-{}", accuracy),
+        [=] {
+          FamilyWorld world = hullWorld(50, 1);
+          world.model.options.solver.accuracy = accuracy;
+          return world;
+        },
+        whole ? 3 : 1.5);
   for (const double play : {5e-5, 1e-4, 2e-4})
     heap(
         fmt::format("pegs/play-{}um", 1e6 * play), [=] { return pegWorld(play, 8e-3); }, 0.5);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pincer/contact/polytope.h"
 #include "pincer/engine/step.h"
 #include "pincer/tests/support/worlds.h"
 
@@ -17,8 +18,11 @@ struct Crate {
   WorldState state;
 };
 
-// Balls of 10 mm, `side` by `side` in layers, above the floor of a box. `start`: where each is within its place.
-Crate crateOf(int balls, double budget, int side = 5, double start = 0) {
+// Balls of 10 mm, or others of that size, `side` by `side` in layers, above the floor of a box. `start`: where each is
+// within its place.
+Crate crateOf(
+    int balls, double budget, int side = 5, double start = 0,
+    contact::Shape (*shapeOf)(int) = [](int) -> contact::Shape { return contact::Sphere{0.01}; }) {
   constexpr double kSpacing = 0.0215;
   const double half = 0.5 * side * kSpacing + 0.001, middle = 0.5 * (side - 1);
   WorldOptions options;
@@ -33,7 +37,7 @@ Crate crateOf(int balls, double budget, int side = 5, double start = 0) {
                       Vec3::Zero()});
   }
   for (int i = 0; i < balls; ++i) {
-    builder.addBody({"ball", contact::Sphere{0.01}, true, 0.05, {}});
+    builder.addBody({"ball", shapeOf(i), true, 0.05, {}});
     const Vec3 shift = 4e-4 * Vec3(std::sin(7.0 * i + start), std::sin(11.0 * i + start), std::sin(13.0 * i + start));
     const int layer = i / (side * side), row = i / side % side, column = i % side;
     starts.push_back(
@@ -118,6 +122,30 @@ TEST(Heap, OfTenBallsHasAnAnswerInEachTick) {
     EXPECT_LT(deepest(scratch), 1e-6);
   }
   EXPECT_GT(gave, 50);
+}
+
+// Twenty corners on an ellipsoid, another for each i.
+contact::Shape rock(int i) {
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 20; ++k) {
+    const double z = std::sin(7.0 * k + i), turn = 2.4 * k + i, r = std::sqrt(1 - z * z);
+    corners.push_back(0.01 * Vec3(1.2 * r * std::cos(turn), r * std::sin(turn), 0.8 * z));
+  }
+  return contact::Convex{contact::Polytope::hullOf(corners, "rock")};
+}
+
+// Errors of as much as a loose accuracy allows stirred it for ever, and it was dearer than with the default.
+TEST(Heap, OfRocksComesToRestAtALooseAccuracy) {
+  for (const double accuracy : {1e-4, 1e-3, 1e-2}) {
+    Crate crate = crateOf(50, 0, 3, 0, rock);
+    crate.model.options.solver.accuracy = accuracy;
+    WorldScratch scratch(crate.model);
+    for (int tick = 0; tick < 1800; ++tick) step(crate.model, crate.state, scratch);
+    int iterations = 0;
+    for (int tick = 0; tick < 200; ++tick) iterations += step(crate.model, crate.state, scratch).solve.iterations;
+    EXPECT_LT(iterations, 600) << accuracy;  // three per tick: a rock may still turn
+    EXPECT_LT(deepest(scratch), 1e-5) << accuracy;
+  }
 }
 
 // A ball that landed went by its velocity at the end of the tick, one that it stopped by the mean of two and ended 0.3
