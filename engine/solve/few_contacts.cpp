@@ -16,9 +16,7 @@ namespace pincer::engine {
 namespace {
 
 constexpr std::int64_t kPerContactScaled = 300, kPerPairScaled = 40;  // multiplications
-constexpr int kInteriorPointSteps = 30;                               // each time
-// After the interior point a few rounds either arrive or never do.
-constexpr ProximalLimits kManyRounds{12, 60}, kRoundsFromInside{12, 30};
+constexpr int kProximalRounds = 12, kInteriorPointSteps = 30;         // each time
 
 // How long each method is given: where the tolerance alone counts, not the tick, longer.
 struct Patience {
@@ -67,22 +65,19 @@ class FewSearch {
 
   bool tryNewton(const SolverOptions& options) { return finish(options); }
 
-  // Where Newton's method failed. That contacts may give way means that they were tried without it: what the interior
-  // point didn't solve then it rarely solves now, and rounds go on from where its own ended.
+  // Where Newton's method failed. That contacts may give way means that they were tried without it.
   SolveMethod goOn(const SolverOptions& options) {
     const double most = options.largest_give;
     if (isSpent() || (!(most > 0) && isSqueezedNow())) return SolveMethod::kNotConverged;
-    const bool is_again = problem_.contactCount() < kManyContacts && most > 0;
-    const bool goes_by_rounds =
-        problem_.contactCount() >= kManyContacts || options.effort == SolverEffort::kRounds || is_again;
-    if (goes_by_rounds) {
-      goOnProximally(options, is_again ? kRoundsFromInside : kManyRounds, equations_);
+    const bool is_small = problem_.contactCount() < kManyContacts;
+    if (!is_small || options.effort == SolverEffort::kRounds) {
+      goOnProximally(options, equations_);
     } else if (goOnFromInside(options)) {
       return SolveMethod::kInteriorPoint;
     }
     if ((isEnough(options) && !isSqueezedNow()) || giveWay(options, most)) return SolveMethod::kNewton;
     if (options.effort != SolverEffort::kAll || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
-    if (goes_by_rounds && (goOnFromInside(options) || giveWay(options, most))) return SolveMethod::kInteriorPoint;
+    if (!is_small && (goOnFromInside(options) || giveWay(options, most))) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
     if (!(most > 0) && iterateOnShift(options)) return SolveMethod::kInteriorPoint;
     return sweepOn(options) ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
@@ -149,11 +144,11 @@ class FewSearch {
     return false;
   }
 
-  void goOnProximally(const SolverOptions& options, const ProximalLimits& most, ContactEquations& equations) {
+  void goOnProximally(const SolverOptions& options, ContactEquations& equations) {
     restartFromBest();
     evaluate(problem_, current_);
     iterations_ +=
-        iterateProximally(problem_, 0.5 * options.tolerance, most, equations, scratch_, current_, trial_, best_);
+        iterateProximally(problem_, 0.5 * options.tolerance, kProximalRounds, equations, scratch_, current_, trial_);
     keepBest();
   }
 
@@ -168,7 +163,7 @@ class FewSearch {
     iterations_ +=
         followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations, scratch_, current_);
     keepBest();
-    goOnProximally(options, kRoundsFromInside, equations);
+    goOnProximally(options, equations);
     return isEnough(options) && !(options.largest_give > 0 && isSqueezedNow());
   }
 
@@ -228,7 +223,12 @@ class FewSearch {
       scratch_.shift.data()[i] = std::sqrt(tangentNorm2(current_.u + problem_.firstRow(i), problem_.rows(i)));
   }
 
-  void keepBest() { keepBetter(problem_, current_, best_); }
+  void keepBest() {
+    if (!(current_.residual < best_.residual)) return;
+    std::copy(current_.r, current_.r + problem_.rowCount(), best_.r);
+    std::copy(current_.u, current_.u + problem_.rowCount(), best_.u);
+    best_.residual = current_.residual;
+  }
   void restartFromBest() { std::copy(best_.r, best_.r + problem_.rowCount(), current_.r); }
 
   EquationForm form_;

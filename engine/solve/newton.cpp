@@ -15,10 +15,10 @@ constexpr double kCorrected = 1e-8;      // of Newton's equations: what epsilon 
 constexpr int kMostCorrections = 3;      // by the same factors
 // of a first round: small enough that a few rounds do, large enough for the equations to be tame. Less after a round
 // that went easily, for slow slip asks for as little; more after one that failed
-constexpr double kProximalEpsilon = 1e-3, kLessEpsilon = 0.2, kHarderEpsilon = 5, kLeastEpsilon = 1e-6;
+constexpr double kProximalEpsilon = 1e-4, kLessEpsilon = 0.2, kLeastEpsilon = 1e-6;
 constexpr int kEasySteps = 4;
 constexpr double kRoundDecrease = 1e-6;  // of |Phi|^2 in a round
-constexpr int kStepsPerRound = 5;        // those that take more go in circles as a rule
+constexpr int kStepsPerRound = 8;
 // of contacts that give way: as long as a round isn't solved, more
 constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;
 constexpr int kStepsPerGivingRound = 12;
@@ -224,20 +224,12 @@ int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations
   return iterations;
 }
 
-void keepBetter(const ScaledProblem& problem, const Iterate& current, Iterate& best) {
-  if (!(current.residual < best.residual)) return;
-  std::copy(current.r, current.r + problem.rowCount(), best.r);
-  std::copy(current.u, current.u + problem.rowCount(), best.u);
-  best.residual = current.residual;
-}
-
-int iterateProximally(const ScaledProblem& problem, double tolerance, const ProximalLimits& most,
-                      ContactEquations& equations, SolverScratch& scratch, Iterate& current, Iterate& trial,
-                      Iterate& best) {
+int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
+                      SolverScratch& scratch, Iterate& current, Iterate& trial) {
   double* const r_c = scratch.shift_centre.data();
-  double least = current.residual, epsilon = kProximalEpsilon;
+  double best = current.residual, epsilon = kProximalEpsilon;
   int steps = 0, patience = kPatience;
-  for (int round = 0; round < most.rounds && steps < most.steps; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     if (current.residual <= tolerance || !std::isfinite(current.residual)) return steps;
     std::copy(current.r, current.r + problem.rowCount(), r_c);
     const Centre centre{r_c, epsilon};
@@ -252,13 +244,12 @@ int iterateProximally(const ScaledProblem& problem, double tolerance, const Prox
       ++steps;
       is_solved = current.residual <= tolerance || merit(problem, centre, current) <= enough;
     }
-    keepBetter(problem, current, best);
     if (!is_solved)
-      epsilon *= kHarderEpsilon;
+      epsilon /= kLessEpsilon;
     else if (n <= kEasySteps)
       epsilon = std::max(kLessEpsilon * epsilon, kLeastEpsilon);
-    if (current.residual < 0.5 * least) {
-      least = current.residual;
+    if (current.residual < 0.5 * best) {
+      best = current.residual;
       patience = kPatience;
     } else if (--patience == 0) {
       return steps;

@@ -22,20 +22,13 @@ namespace pincer::engine {
 int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations,
                   SolverScratch& scratch, Iterate& current, Iterate& trial);
 
-// `best` becomes `current` where that has the smaller residual.
-void keepBetter(const ScaledProblem& problem, const Iterate& current, Iterate& best);
-
-// The same for problems on which Newton's method alone cycles: some problems with the velocities u + epsilon
+// The same for problems on which Newton's method alone cycles: up to `rounds` problems with the velocities u + epsilon
 // (r - r_c), r_c the answer of the round before. Each is tame (contacts that contradict each other give way by
 // epsilon), and their answers tend to the true one, at once in directions that redundant contacts leave open: the
 // sooner the smaller epsilon is, which follows how easily the last round went. Source: R. Rockafellar, SIAM J. Control
-// Optim. 14 (1976) 877-898 (proximal point). A round that fails may lead away: `best` keeps the best answer of a round.
-struct ProximalLimits {
-  int rounds, steps;  // a last round may take a few steps more
-};
-int iterateProximally(const ScaledProblem& problem, double tolerance, const ProximalLimits& most,
-                      ContactEquations& equations, SolverScratch& scratch, Iterate& current, Iterate& trial,
-                      Iterate& best);
+// Optim. 14 (1976) 877-898 (proximal point).
+int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
+                      SolverScratch& scratch, Iterate& current, Iterate& trial);
 
 // The same for contacts that contradict each other, which have no answer: the answer for q + give, give = epsilon (r -
 // r_c) of the last round that was solved. It tends to the least that they have to give way by; rounds go on until it is

@@ -96,7 +96,8 @@ std::unique_ptr<BenchEngine> pincerRobot(const BenchRobot& robot, const BenchSte
 // Other engines, each at its documented best (tasks/judge/peers); none in a build without -DPINCER_PEERS=ON.
 std::vector<Contestant> enginePeers();
 
-// Bullet with ten iterations, as games run it, for families of worlds (family_worlds.h); none without -DPINCER_PEERS=ON.
+// Bullet with ten iterations, as games run it, for families of worlds (family_worlds.h);
+// none without -DPINCER_PEERS=ON.
 std::vector<Contestant> familyPeers();
 
 // The force on a guided body along its free axes at time t, where its engine has no spring of its own: the damper as it
