@@ -230,7 +230,8 @@ class Search {
     int patience = longest, failures = 0;
     while (!isEnough() && !isSpent()) {
       const int before = result_.iterations;
-      if (!round.solve(Shift::kFollows, {epsilon, left(), stepsOf(kMostRoundSteps)}, result_.iterations)) {
+      const int most = kMostRoundSteps * (1 + failures);  // or the same rounds would fail again
+      if (!round.solve(Shift::kFollows, {epsilon, left(), stepsOf(most)}, result_.iterations)) {
         epsilon = std::min(kMostEpsilon, pace().harder * epsilon);
         if (++failures > kMostFailures * times()) return;
         goAround(round, std::min(epsilon, kFirstDescent), failures);
@@ -241,7 +242,7 @@ class Search {
       recentre();
       if (give < pace().still_fading * last_give)
         patience = longest;
-      else if (epsilon == kLeastEpsilon || !scratch_.is_patient)
+      else if (epsilon == kLeastEpsilon || !(scratch_.is_patient || error_.speed < kAtRest.still_fading * last_error))
         --patience;
       if (patience == 0) {
         if (isEnough() || giveWay(give) || ++failures > kMostFailures * times()) return;

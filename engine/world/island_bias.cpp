@@ -237,7 +237,8 @@ double largestChordError(double h, std::span<const int> order, const std::vector
 
 bool mayContradict(const ContactProblem& problem) {
   const int n = problem.contactCount();
-  return problem.movers >= 2 && n >= problem.movers;
+  const bool is_twisted = n >= 2 && problem.rowCount() > kTorsionRow * n;
+  return problem.movers >= 2 && (n >= problem.movers || is_twisted);
 }
 
 bool askForNothing(const ContactProblem& problem, const double* r, std::span<const int> order,

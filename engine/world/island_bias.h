@@ -11,7 +11,9 @@
 // against each other without limit, and the solver finds no answer because there is none. What is left here can be had:
 // by the motion z, at which all of these contacts stay shut. Of hundreds of contacts a few steps are taken per tick:
 // what is left is fitted again in the next one. So it is with a rod between two pads, too, which two contacts each
-// hold. Where the contacts don't contradict each other b stays what it is. Pairs alone are made consistent by
+// hold, and with two soft fingers, none of which turns: they may ask one thing for two twists about nearly one axis,
+// and their torsions would wind each other up to the limit of friction. Where the contacts don't contradict each other
+// b stays what it is. Pairs alone are made consistent by
 // stick_bias.h, at less cost. Source: conjugate gradients on the normal equations (M. Hestenes, E. Stiefel, J. Res.
 // Natl. Bur. Stand. 49 (1952) 409-436, section 10).
 #pragma once
@@ -27,7 +29,7 @@ enum class PushingBy : std::uint8_t {
   kWedged,
 };
 
-// True if the problem's contacts may contradict each other around a loop of bodies.
+// True if the problem's contacts may contradict each other: around a loop of bodies, or by torsion.
 bool mayContradict(const ContactProblem& problem);
 
 // True if contacts that push ask for next to nothing, whichever of their rows take part: then a fit changes nothing.

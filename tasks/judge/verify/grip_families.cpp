@@ -104,7 +104,8 @@ void holdWhile(Deed deed, const PadGrip& grip, double rest, Worst& worst) {
   }
   for (const double end = run.time() + rest; run.time() < end;) run.tick(hand);
   const Pose was = run.inHand(hand.q);
-  for (const double end = run.time() + grip.seconds; run.time() < end;) {
+  Standstill rests;
+  for (const double end = run.time() + grip.seconds; run.time() < end && !rests.noted(run.state.world);) {
     run.tick(hand);
     worst.note(was, run.inHand(hand.q));
   }

@@ -200,7 +200,8 @@ double pressRow(const BallRow& row, std::int64_t& flagged) {
   const grasp::ScratchHandle scratch = grasp::makeScratch(model);
   std::vector<engine::BodyState> pressed;  // the press, which comes all at once, has been taken up
   double furthest = 0;
-  for (int tick = 0; tick < 1000 * row.seconds; ++tick) {
+  Standstill rests;
+  for (int tick = 0; tick < 1000 * row.seconds && !rests.noted(state.world); ++tick) {
     flagged += grasp::step(model, state, *scratch, inputs).status != engine::kStepOk;
     if (tick == 1000) pressed = state.world.bodies;
     for (std::size_t i = 0; i < static_cast<std::size_t>(row.balls) && tick > 1000; ++i)
@@ -219,27 +220,34 @@ std::vector<Record> row(MeasureContext&) {
           exactly("flagged ticks", static_cast<double>(flagged), "-", 0)};
 }
 
-// Rows of 3 to 30 balls; of 60 contacts and more, as 20 balls have, rows are solved by another method. Of 40, the last
-// a thousand times as heavy, pressed by 50 N with mu 1, one spins between its neighbours: the row arches.
+// Rows of 3 to 30 balls, all presses and places of the heavy one with --long. Of 20 balls on rows have more contacts
+// than are solved to round-off: balls settle by the accuracy of 1e-6 m/s, for some ticks. Of 40, the last a thousand
+// times as heavy, pressed by 50 N with mu 1, one spins between its neighbours: the row arches.
 std::vector<Record> rows(MeasureContext& context) {
-  double moved = 0, runs = 0;
+  constexpr int kManyBalls = 20;
+  double few = 0, many = 0, runs = 0;
   std::int64_t flagged = 0;
   for (const int balls :
-       context.thorough ? std::vector<int>{3, 4, 5, 7, 10, 12, 15, 20, 30} : std::vector<int>{3, 10, 15}) {
+       context.thorough ? std::vector<int>{3, 4, 5, 7, 10, 12, 15, 20, 30} : std::vector<int>{3, 10, 15, 20}) {
+    double& furthest = balls < kManyBalls ? few : many;
     for (const double heavier : {1.0, 100.0, 1000.0}) {
       for (const double mu : {0.1, 0.3, 0.5, 1.0}) {
         for (const double degrees : {30.0, 45.0, 60.0}) {
-          for (int k = 0; k < (context.thorough ? 6 : 1) && !context.interrupted(); ++k, ++runs) {
-            const int heavy = (k % 3) * (balls - 1) / 2;
-            moved = std::max(moved, pressRow({balls, heavy, heavier, mu, degrees * std::numbers::pi / 180,
-                                              k < 3 ? 5.0 : 50.0, context.thorough ? 60.0 : 2.0},
-                                             flagged));
+          for (const bool hard : {true, false}) {
+            for (int k = 0; k < (context.thorough ? 3 : hard) && !context.interrupted(); ++k, ++runs) {
+              furthest = std::max(furthest,
+                                  pressRow({balls, k * (balls - 1) / 2, heavier, mu, degrees * std::numbers::pi / 180,
+                                            hard ? 50.0 : 5.0, context.thorough ? 60.0 : 2.0},
+                                           flagged));
+            }
           }
         }
       }
     }
   }
-  return {unbounded("rows", runs, "-"), atMost("furthest of any ball after 1 s", 1e6 * moved, "um", 1e-5),
+  return {unbounded("rows", runs, "-"),
+          atMost("furthest of any ball after 1 s, rows of up to 15", 1e6 * few, "um", 1e-5),
+          atMost("furthest of any ball after 1 s, rows of 20 and more", 1e6 * many, "um", 1e-2),
           exactly("flagged ticks", static_cast<double>(flagged), "-", 0)};
 }
 

@@ -44,6 +44,28 @@ RunCount runThrough(Simulation& simulation, MeasureContext& context, const Look&
   return count;
 }
 
+// Tells when a world has come to rest for good: a tick follows from the last state and its inputs alone, so that where
+// a second of ticks has changed no bit but the clock's, the rest of a minute need not be computed.
+class Standstill {
+ public:
+  // After each tick whose inputs are those of the last one.
+  bool noted(const engine::WorldState& state) {
+    but_the_clock_ = state;
+    but_the_clock_.time = 0;
+    but_the_clock_.tick = 0;
+    const std::uint64_t hash = engine::hashOf(but_the_clock_);
+    same_ = hash == last_ ? same_ + 1 : 0;
+    last_ = hash;
+    return same_ >= kForGood;
+  }
+
+ private:
+  static constexpr int kForGood = 1000;  // ticks, more than any memory of fingers' looks counts
+  engine::WorldState but_the_clock_;
+  std::uint64_t last_ = 0;
+  int same_ = 0;
+};
+
 // The value between `low`, where holds() is false, and `high`, where it is true, at which
 // it changes, to 2^-steps of the distance.
 inline double threshold(double low, double high, int steps, const std::function<bool(double)>& holds) {
