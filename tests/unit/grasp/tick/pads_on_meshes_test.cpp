@@ -192,16 +192,19 @@ TEST(PadOnMesh, AsksNoEdgeThatIsFarFromABall) {
 namespace pincer::grasp {
 namespace {
 
+constexpr double kFriction = 0.6;
+
 struct Creep {
   double way, turn;  // in three seconds, from one second on [m, rad]
   int flagged;
+  double wound;  // torsion of a pad at their end, of what friction carries at most [-]
 };
 
 // Of a part, nudged between two pads of the half width `half` whose centres are `touch` to either side of `X_WB`.
 Creep creepBetweenPads(const contact::TriangleMesh& part, const Pose& X_WB, double touch, double half,
                        double patch_radius, const Vec3& w_W) {
   engine::WorldBuilder builder{engine::WorldOptions{}};
-  builder.addBody({"part", contact::smooth(part), true, 0.1, {0.6, 0.6, 0, 0}});
+  builder.addBody({"part", contact::smooth(part), true, 0.1, {kFriction, kFriction, 0, 0}});
   std::vector<FingerModel> fingers = {tests::softFinger("left", 5000), tests::softFinger("right", 5000)};
   std::vector<Vec3> corners;
   for (int i = 0; i < 8; ++i) corners.push_back({i & 1 ? 1.5e-3 : -1.5e-3, i & 2 ? half : -half, i & 4 ? half : -half});
@@ -222,7 +225,12 @@ Creep creepBetweenPads(const contact::TriangleMesh& part, const Pose& X_WB, doub
   int flagged = 0;
   for (int i = 0; i < 3000; ++i) flagged += step(model, state, scratch, inputs).status != engine::kStepOk;
   const Pose& now = state.world.bodies[0].X_WI;
-  return {(now.p - held.p).norm(), angleBetween(now.q, held.q), flagged};
+  double wound = 0;
+  for (int k = 0; k < state.world.contact_count; ++k) {
+    const engine::ContactVector& r = state.world.contacts[static_cast<std::size_t>(k)].r;
+    wound = std::max(wound, std::abs(r[engine::kTorsionRow]) / (kFriction * r[engine::kNormalRow]));
+  }
+  return {(now.p - held.p).norm(), angleBetween(now.q, held.q), flagged, wound};
 }
 
 // A turned part about the z axis.
@@ -294,6 +302,17 @@ TEST(PadOnMesh, HoldsAConeThatLiesOnItsWall) {
       EXPECT_LT(creep.way, 1e-11) << top << ' ' << sides;
       EXPECT_LT(creep.turn, 1e-8) << top << ' ' << sides;
     }
+  }
+}
+
+// Two soft pads that don't turn remember two twists of what they hold, about normals that aren't quite parallel: their
+// torsions wound each other up, by 6 % of what friction carries per second, until nothing of it was left.
+TEST(PadOnMesh, DoesntWindABallUp) {
+  for (const double half : {0.0145, 0.0195}) {
+    const Creep creep = creepBetweenPads(contact::geodesicSphere(0.015, 8), {Quat::Identity(), Vec3(0, 0, 0.1)}, 0.017,
+                                         half, 0.004, Vec3(0.2, -0.1, 0.2));
+    EXPECT_EQ(creep.flagged, 0) << half;
+    EXPECT_LT(creep.wound, 0.05) << half;
   }
 }
 
