@@ -121,8 +121,9 @@ template <class Rows>
 // |u_T| e_n; 0 iff r and u obey it [(m/s)^2].
 //   w  > 0: scale that turns impulses into velocities [1/kg]. K is a cone, so w P_K(y) = P_K(w y): no division.
 inline double naturalMap2(const double* r, const double* u, int rows, double mu, double w) {
-  if (rows != kTorsionRow) return naturalMap2Of(rows, r, u, mu, w);
-  return naturalMap2Of(std::integral_constant<int, kTorsionRow>(), r, u, mu, w);
+  double sum = 0;
+  withRows(rows, [&](auto count) { sum = naturalMap2Of(count, r, u, mu, w); });
+  return sum;
 }
 
 }  // namespace pincer::engine

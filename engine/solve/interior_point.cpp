@@ -103,24 +103,31 @@ class CentralPath {
     return sum / problem_.contactCount();
   }
 
+  // act(first row, number of rows), as a constant where that is usual, of contact i.
+  template <class Act>
+  [[gnu::always_inline]] void atContact(int i, const Act& act) const {
+    withRows(problem_.rows(i), [&](auto rows) { act(problem_.firstRow(i), rows); });
+  }
+
   // The equations for dr = S dx:  N^2 S^-1 dr + (I + e_n t^T) S W^ dr = right-hand side.
   bool linearise() {
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i), rows = problem_.rows(i);
-      const NesterovTodd N(x_ + first, z_ + first, rows);
-      N.apply(x_ + first, rows, lambda_ + first);
-      double E[ContactTerms::kSize] = {}, P[ContactTerms::kSize] = {};
-      for (int k = 0; k < rows; ++k) {
-        double column[kMaxContactRows] = {};
-        column[k] = 1;
-        N.apply(column, rows, column);
-        N.apply(column, rows, column);
-        for (int l = 0; l < rows; ++l)
-          E[kMaxContactRows * l + k] = (column[l] + (k == l ? kRegularisation : 0)) / stretch(i, k);
-        P[(kMaxContactRows + 1) * k] = stretch(i, k);
-        if (k != kNormalRow) P[kMaxContactRows * kNormalRow + k] = t_[first + k];
-      }
-      equations_.setGeneral(i, E, P);
+      atContact(i, [&](int first, auto rows) {
+        const NesterovTodd N(x_ + first, z_ + first, rows);
+        N.apply(x_ + first, rows, lambda_ + first);
+        double E[ContactTerms::kSize], P[ContactTerms::kSize];
+        for (int k = 0; k < rows; ++k) {
+          double column[kMaxContactRows] = {};
+          column[k] = 1;
+          N.apply(column, rows, column);
+          N.apply(column, rows, column);
+          for (int l = 0; l < rows; ++l) {
+            E[kMaxContactRows * l + k] = (column[l] + (k == l ? kRegularisation : 0)) / stretch(i, k);
+            P[kMaxContactRows * l + k] = k == l ? stretch(i, k) : l == kNormalRow ? t_[first + k] : 0;
+          }
+        }
+        equations_.setGeneral(i, E, P);
+      });
     }
     return equations_.factorise();
   }
@@ -128,46 +135,48 @@ class CentralPath {
   // c = -lambda o lambda: straight to complementarity.
   void aimAtBoundary() {
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i);
-      jordanProduct(lambda_ + first, lambda_ + first, problem_.rows(i), target_ + first);
-      for (int k = 0; k < problem_.rows(i); ++k) target_[first + k] = -target_[first + k];
+      atContact(i, [&](int first, auto rows) {
+        jordanProduct(lambda_ + first, lambda_ + first, rows, target_ + first);
+        for (int k = 0; k < rows; ++k) target_[first + k] = -target_[first + k];
+      });
     }
   }
 
   // c = gap e - lambda o lambda - (N dx) o (N^-1 dz), Mehrotra's second-order term from the predictor.
   void aimAtCentre(double gap, double second_order) {
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i);
-      const int rows = problem_.rows(i);
-      const NesterovTodd N(x_ + first, z_ + first, rows);
-      double a[kMaxContactRows], b[kMaxContactRows];
-      N.apply(dx_ + first, rows, a);
-      N.applyInverse(dz_ + first, rows, b);
-      jordanProduct(a, b, rows, a);
-      for (int k = 0; k < rows; ++k) target_[first + k] -= second_order * a[k];
-      target_[normal(i)] += gap;
+      atContact(i, [&](int first, auto rows) {
+        const NesterovTodd N(x_ + first, z_ + first, rows);
+        double a[kMaxContactRows], b[kMaxContactRows];
+        N.apply(dx_ + first, rows, a);
+        N.applyInverse(dz_ + first, rows, b);
+        jordanProduct(a, b, rows, a);
+        for (int k = 0; k < rows; ++k) target_[first + k] -= second_order * a[k];
+        target_[normal(i)] += gap;
+      });
     }
   }
 
   // dx and dz towards the target; returns the step to the boundary.
   double direct() {
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i);
-      const int rows = problem_.rows(i);
-      jordanDivide(lambda_ + first, target_ + first, rows, dx_ + first);
-      NesterovTodd(x_ + first, z_ + first, rows).apply(dx_ + first, rows, dx_ + first);
-      for (int k = 0; k < rows; ++k) dx_[first + k] += defect_[first + k];
+      atContact(i, [&](int first, auto rows) {
+        jordanDivide(lambda_ + first, target_ + first, rows, dx_ + first);
+        NesterovTodd(x_ + first, z_ + first, rows).apply(dx_ + first, rows, dx_ + first);
+        for (int k = 0; k < rows; ++k) dx_[first + k] += defect_[first + k];
+      });
     }
     equations_.solve(dx_);
     double* const W_dr = scratch_.step.data();
     multiply(problem_, dx_, W_dr);
     double length = 1e3;
     for (int i = 0; i < problem_.contactCount(); ++i) {
-      const int first = problem_.firstRow(i), rows = problem_.rows(i);
-      for (int k = 0; k < rows; ++k) dx_[first + k] /= stretch(i, k);
-      respond(i, W_dr + first, dz_ + first);
-      length = std::min(
-          {length, stepToBoundary(x_ + first, dx_ + first, rows), stepToBoundary(z_ + first, dz_ + first, rows)});
+      atContact(i, [&](int first, auto rows) {
+        for (int k = 0; k < rows; ++k) dx_[first + k] /= stretch(i, k);
+        respond(i, W_dr + first, dz_ + first);
+        length = std::min(
+            {length, stepToBoundary(x_ + first, dx_ + first, rows), stepToBoundary(z_ + first, dz_ + first, rows)});
+      });
     }
     return length;
   }

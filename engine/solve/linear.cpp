@@ -1,39 +1,77 @@
 #include "pincer/engine/solve/linear.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 #include <utility>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/solve/wide.h"
 
 namespace pincer::engine {
 namespace {
 
 constexpr int kUsual = 6;
 
-int pivotRow(const double* column, int k, int n) {
-  int best = k;
-  for (int i = k + 1; i < n; ++i)
-    if (std::abs(column[i]) > std::abs(column[best])) best = i;
-  return best;
+[[gnu::always_inline]] inline void takeSizes(const double* x, Four& sizes) {
+  const Four& numbers = fourAt(x);
+  sizes = numbers > -numbers ? numbers : -numbers;
+}
+
+// The first of the largest numbers from row k on, lane by lane; the last four may be looked at twice.
+[[gnu::always_inline]] inline int pivotRow(const double* column, int k, int n) {
+  double best = std::abs(column[k]), row = k;
+  const auto compare = [&](double number, double its_row) {
+    const bool is_better = number > best || (number == best && its_row < row);
+    best = is_better ? number : best;
+    row = is_better ? its_row : row;
+  };
+  if (n - k < kFour) {
+    for (int i = k + 1; i < n; ++i) compare(std::abs(column[i]), i);
+    return static_cast<int>(row);
+  }
+  const double first = k;
+  Four most, sizes, rows = {first, first + 1, first + 2, first + 3};
+  takeSizes(column + k, most);
+  for (int next = k + kFour; next < n; next += kFour) {
+    const int i = std::min(next, n - kFour);
+    const double i_row = i;
+    const Four its_rows = {i_row, i_row + 1, i_row + 2, i_row + 3};
+    takeSizes(column + i, sizes);
+    rows = sizes > most ? its_rows : rows;
+    most = sizes > most ? sizes : most;
+  }
+  for (int lane = 0; lane < kFour; ++lane) compare(most[lane], rows[lane]);
+  return static_cast<int>(row);
 }
 
 // y -= a x over rows [from, to)
-void subtractScaled(double* y, double a, const double* x, int from, int to) {
-  for (int i = from; i < to; ++i) y[i] -= a * x[i];
+[[gnu::always_inline]] inline void subtractScaled(double* y, double a, const double* x, int from, int to) {
+  int i = from;
+  for (; i + kFour <= to; i += kFour) fourAt(y + i) -= a * fourAt(x + i);
+  for (; i < to; ++i) y[i] -= a * x[i];
 }
 
-// y -= L's columns [from, from + count) times y's own numbers there, over the rows below: number by number in the order
-// of the columns.
-constexpr int kColumnsAtOnce = 4;  // at once: each number of y is read and written once for so many
-void subtractColumns(double* y, const double* L, int n, int from) {
-  const double *const a = L + from * n, *const b = a + n, *const c = b + n, *const d = c + n;
+// y -= `count` columns of L from `from` on, at most four, times y's own numbers there: number by number in the order of
+// the columns, of which each sees all at once.
+template <int count>
+[[gnu::always_inline]] inline void subtractColumns(double* y, const double* L, int n, int from) {
+  const double* const columns = L + from * n;
   double* const u = y + from;
-  u[1] -= u[0] * a[from + 1];
-  u[2] = (u[2] - u[0] * a[from + 2]) - u[1] * b[from + 2];
-  u[3] = ((u[3] - u[0] * a[from + 3]) - u[1] * b[from + 3]) - u[2] * c[from + 3];
-  const double u0 = u[0], u1 = u[1], u2 = u[2], u3 = u[3];
-  for (int i = from + kColumnsAtOnce; i < n; ++i) y[i] = (((y[i] - u0 * a[i]) - u1 * b[i]) - u2 * c[i]) - u3 * d[i];
+  for (int i = 1; i < std::min(kFour, n - from); ++i) {
+    for (int k = 0; k < std::min(count, i); ++k) u[i] -= u[k] * columns[k * n + from + i];
+  }
+  double by[count];
+  for (int k = 0; k < count; ++k) by[k] = u[k];
+  int i = from + kFour;
+  for (; i + kFour <= n; i += kFour) {
+    Four sum = fourAt(y + i);
+    for (int k = 0; k < count; ++k) sum -= by[k] * fourAt(columns + k * n + i);
+    fourAt(y + i) = sum;
+  }
+  for (; i < n; ++i) {
+    for (int k = 0; k < count; ++k) y[i] -= by[k] * columns[k * n + i];
+  }
 }
 
 // In line for the six freedoms of a body, the size that nearly all have.
@@ -61,16 +99,14 @@ template <class Size>
   }
 }
 
-}  // namespace
-
-// Column after column, each by all before it at once.
-bool factoriseLu(double* A, int n, int* pivots) {
-  for (int j = 0; j < n; ++j) {
+// Columns [from, to), at most four, by themselves, their rows above `from` done. False if a pivot is 0 or not finite.
+[[gnu::always_inline]] inline bool factorisePanel(double* A, int n, int from, int to, int* pivots) {
+  for (int j = from; j < to; ++j) {
     double* const column = A + j * n;
-    for (int k = 0; k < j; ++k) std::swap(column[k], column[pivots[k]]);
-    int k = 0;
-    for (; k + kColumnsAtOnce <= j; k += kColumnsAtOnce) subtractColumns(column, A, n, k);
-    for (; k < j; ++k) subtractScaled(column, column[k], A + k * n, k + 1, n);
+    for (int k = from; k < j; ++k) std::swap(column[k], column[pivots[k]]);
+    if (j == from + 1) subtractColumns<1>(column, A, n, from);
+    if (j == from + 2) subtractColumns<2>(column, A, n, from);
+    if (j == from + 3) subtractColumns<3>(column, A, n, from);
     pivots[j] = pivotRow(column, j, n);
     for (int i = 0; i <= j && pivots[j] != j; ++i) std::swap(A[j + i * n], A[pivots[j] + i * n]);
     const double pivot = column[j];
@@ -81,16 +117,42 @@ bool factoriseLu(double* A, int n, int* pivots) {
   return true;
 }
 
-void solveLu(const double* LU, int n, const int* pivots, double* b) {
+// Four columns at a time, and then all to the right of them, which don't wait for each other.
+[[gnu::always_inline]] inline bool factoriseColumns(double* A, int n, int* pivots) {
+  int from = 0;
+  for (; from + kFour < n; from += kFour) {
+    if (!factorisePanel(A, n, from, from + kFour, pivots)) return false;
+    for (int j = from + kFour; j < n; ++j) {
+      double* const column = A + j * n;
+      for (int k = from; k < from + kFour; ++k) std::swap(column[k], column[pivots[k]]);
+      subtractColumns<kFour>(column, A, n, from);
+    }
+  }
+  return factorisePanel(A, n, from, n, pivots);
+}
+
+[[gnu::always_inline]] inline void solveColumns(const double* LU, int n, const int* pivots, double* b) {
   for (int k = 0; k < n; ++k) {
     PINCER_ASSERT(k <= pivots[k] && pivots[k] < n);
     std::swap(b[k], b[pivots[k]]);
   }
-  for (int k = 0; k < n; ++k) subtractScaled(b, b[k], LU + k * n, k + 1, n);
+  int from = 0;
+  for (; from + kFour <= n; from += kFour) subtractColumns<kFour>(b, LU, n, from);
+  for (int k = from; k < n; ++k) subtractScaled(b, b[k], LU + k * n, k + 1, n);
   for (int k = n - 1; k >= 0; --k) {
     b[k] /= LU[k + k * n];
     subtractScaled(b, b[k], LU + k * n, 0, k);
   }
+}
+
+}  // namespace
+
+bool factoriseLu(double* A, int n, int* pivots) {
+  return wide([=] [[gnu::always_inline]] { return factoriseColumns(A, n, pivots); });
+}
+
+void solveLu(const double* LU, int n, const int* pivots, double* b) {
+  wide([=] [[gnu::always_inline]] { solveColumns(LU, n, pivots, b); });
 }
 
 bool factoriseLdlt(double* A, int n) {

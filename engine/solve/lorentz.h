@@ -14,12 +14,12 @@
 namespace pincer::engine {
 
 // sqrt(det v) of a v inside L; by factors, because near the boundary the squares cancel.
-inline double lorentzNorm(const double* v, int rows) {
+[[gnu::always_inline]] inline double lorentzNorm(const double* v, int rows) {
   const double vT = std::sqrt(tangentNorm2(v, rows));
   return std::sqrt(std::max((v[kNormalRow] - vT) * (v[kNormalRow] + vT), 0.0));
 }
 
-inline void jordanProduct(const double* a, const double* b, int rows, double* ab) {
+[[gnu::always_inline]] inline void jordanProduct(const double* a, const double* b, int rows, double* ab) {
   const double a_n = a[kNormalRow];
   const double b_n = b[kNormalRow];
   const double normal = tangentDot(a, b, rows) + a_n * b_n;
@@ -28,7 +28,7 @@ inline void jordanProduct(const double* a, const double* b, int rows, double* ab
 }
 
 // x with a o x = b; a inside L.
-inline void jordanDivide(const double* a, const double* b, int rows, double* x) {
+[[gnu::always_inline]] inline void jordanDivide(const double* a, const double* b, int rows, double* x) {
   const double a_n = a[kNormalRow];
   const double norm = lorentzNorm(a, rows);
   const double normal = (a_n * b[kNormalRow] - tangentDot(a, b, rows)) / (norm * norm);
@@ -48,5 +48,31 @@ struct NesterovTodd {
   void apply(const double* a, int rows, double* Na) const;
   void applyInverse(const double* a, int rows, double* Na) const;
 };
+
+[[gnu::always_inline]] inline NesterovTodd::NesterovTodd(const double* x, const double* z, int rows) {
+  const double x_norm = lorentzNorm(x, rows);
+  const double z_norm = lorentzNorm(z, rows);
+  beta = std::sqrt(z_norm / x_norm);
+  const double cosine = (tangentDot(x, z, rows) + x[kNormalRow] * z[kNormalRow]) / (x_norm * z_norm);
+  const double inverse = 1 / (2 * std::sqrt(0.5 * (1 + cosine)));
+  for (int k = 0; k < rows; ++k) v[k] = (z[k] / z_norm - x[k] / x_norm) * inverse;
+  v[kNormalRow] = (z[kNormalRow] / z_norm + x[kNormalRow] / x_norm) * inverse + 1;
+  const double half = 1 / std::sqrt(2 * v[kNormalRow]);
+  for (int k = 0; k < rows; ++k) v[k] *= half;
+}
+
+[[gnu::always_inline]] inline void NesterovTodd::apply(const double* a, int rows, double* Na) const {
+  const double along = 2 * (tangentDot(v, a, rows) + v[kNormalRow] * a[kNormalRow]);
+  const double normal = beta * (along * v[kNormalRow] - a[kNormalRow]);
+  for (int k = 0; k < rows; ++k) Na[k] = beta * (along * v[k] + a[k]);
+  Na[kNormalRow] = normal;
+}
+
+[[gnu::always_inline]] inline void NesterovTodd::applyInverse(const double* a, int rows, double* Na) const {
+  const double along = 2 * (v[kNormalRow] * a[kNormalRow] - tangentDot(v, a, rows));
+  const double normal = (along * v[kNormalRow] - a[kNormalRow]) / beta;
+  for (int k = 0; k < rows; ++k) Na[k] = (a[k] - along * v[k]) / beta;
+  Na[kNormalRow] = normal;
+}
 
 }  // namespace pincer::engine

@@ -53,8 +53,8 @@ struct Centre {
   double epsilon = 0;
 };
 
-void velocityAt(const Iterate& it, const Centre& centre, int first, int rows, double* u) {
-  std::copy(it.u + first, it.u + first + rows, u);
+[[gnu::always_inline]] inline void velocityAt(const Iterate& it, const Centre& centre, int first, int rows, double* u) {
+  for (int k = 0; k < rows; ++k) u[k] = it.u[first + k];
   if (!centre.r) return;
   for (int k = 0; k < rows; ++k) u[k] += centre.epsilon * (it.r[first + k] - centre.r[first + k]);
 }
@@ -65,10 +65,12 @@ double merit(const ScaledProblem& problem, const Centre& centre, const Iterate& 
   double phi[kMaxContactRows];
   for (int i = 0; i < problem.contactCount(); ++i) {
     const int first = problem.firstRow(i), rows = problem.rows(i);
-    double u[kMaxContactRows];
-    velocityAt(it, centre, first, rows, u);
-    alartCurnier(it.r + first, u, rows, problem.friction(i), y, phi);
-    for (int k = 0; k < rows; ++k) sum += phi[k] * phi[k];
+    withRows(rows, [&](auto count) {
+      double u[kMaxContactRows];
+      velocityAt(it, centre, first, count, u);
+      alartCurnier(it.r + first, u, count, problem.friction(i), y, phi);
+      for (int k = 0; k < count; ++k) sum += phi[k] * phi[k];
+    });
   }
   return sum;
 }
@@ -132,8 +134,12 @@ class NewtonStep {
 
  private:
   void linearise(int i) {
+    withRows(problem_.rows(i), [&](auto rows) { lineariseRows(i, rows); });
+  }
+  template <class Rows>
+  void lineariseRows(int i, Rows rows) {
     double y[kMaxContactRows] = {};
-    const int first = problem_.firstRow(i), rows = problem_.rows(i);
+    const int first = problem_.firstRow(i);
     double u[kMaxContactRows];
     velocityAt(it_, centre_, first, rows, u);
     const ContactMode mode = alartCurnier(it_.r + first, u, rows, problem_.friction(i), y, dr_ + first);

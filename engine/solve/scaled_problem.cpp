@@ -3,6 +3,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/mobility.h"
 #include "pincer/engine/solve/residual.h"
+#include "pincer/engine/solve/wide.h"
 
 namespace pincer::engine {
 namespace {
@@ -38,11 +39,26 @@ void fillBlock(const ContactProblem& problem, const double* scale, int i, int j,
   });
 }
 
-// out = W r, column by column.
-void multiplyDense(const double* W, const double* r, int m, double* out) {
-  for (int row = 0; row < m; ++row) out[row] = 0;
+// Numbers of W r that stay in registers, column by column.
+template <int fours>
+[[gnu::always_inline]] inline void multiplyTile(const double* W, const double* r, int m, double* out) {
+  Four sum[fours] = {};
   for (int l = 0; l < m; ++l, W += m) {
-    for (int row = 0; row < m; ++row) out[row] += W[row] * r[l];
+    for (int k = 0; k < fours; ++k) sum[k] += fourAt(W + kFour * k) * r[l];
+  }
+  for (int k = 0; k < fours; ++k) fourAt(out + kFour * k) = sum[k];
+}
+
+// out = W r
+[[gnu::always_inline]] inline void multiplyDense(const double* W, const double* r, int m, double* out) {
+  constexpr int kTile = 4;
+  int row = 0;
+  for (; row + kTile * kFour <= m; row += kTile * kFour) multiplyTile<kTile>(W + row, r, m, out + row);
+  for (; row + kFour <= m; row += kFour) multiplyTile<1>(W + row, r, m, out + row);
+  for (; row < m; ++row) {
+    double sum = 0;
+    for (int l = 0; l < m; ++l) sum += W[l * m + row] * r[l];
+    out[row] = sum;
   }
 }
 
@@ -87,7 +103,7 @@ void scaleSides(const ContactProblem& problem, SolverScratch& scratch) {
 
 void multiply(const ScaledProblem& problem, const double* r, double* out) {
   const int m = problem.rowCount();
-  if (problem.W) return multiplyDense(problem.W, r, m, out);
+  if (problem.W) return wide([&] [[gnu::always_inline]] { multiplyDense(problem.W, r, m, out); });
   for (int row = 0; row < m; ++row) out[row] = 0;
   std::fill(problem.y, problem.y + kMoverFreedoms * problem.movers, 0.0);
   for (int i = 0; i < problem.contactCount(); ++i) {
