@@ -59,30 +59,30 @@ bool invertBlock(double* A, int rows) {
   return true;
 }
 
-// P W of a contact's rows in `columns` columns of W, one every m numbers, into `out`, one every `size`.
-void multiplyColumns(const double* P, int rows, const double* W, int m, int columns, double* out, int size) {
-  withRows(rows, [&](auto count) {
-    double P_columns[kStride * kStride];
-    for (int k = 0; k < count; ++k) {
-      for (int l = 0; l < count; ++l) P_columns[kStride * l + k] = P[kStride * k + l];
+// The rows of one contact in some columns of W, one every m numbers, go to `out`, one every `size`: P W, or W where P is
+// the identity.
+struct RowsOfW {
+  const double* W;
+  int m, size;
+  double* out;
+
+  template <class Rows>
+  [[gnu::always_inline]] void copy(Rows rows, int columns) {
+    for (int column = 0; column < columns; ++column, W += m, out += size) {
+      for (int k = 0; k < rows; ++k) out[k] = W[k];
     }
+  }
+  template <class Rows>
+  [[gnu::always_inline]] void multiply(const double* P_columns, Rows rows, int columns) {
     for (int column = 0; column < columns; ++column, W += m, out += size) {
       double sum[kStride] = {};
-      for (int l = 0; l < count; ++l) {
-        for (int k = 0; k < count; ++k) sum[k] += P_columns[kStride * l + k] * W[l];
+      for (int l = 0; l < rows; ++l) {
+        for (int k = 0; k < rows; ++k) sum[k] += P_columns[kStride * l + k] * W[l];
       }
-      for (int k = 0; k < count; ++k) out[k] = sum[k];
+      for (int k = 0; k < rows; ++k) out[k] = sum[k];
     }
-  });
-}
-
-void copyColumns(int rows, const double* W, int m, int columns, double* out, int size) {
-  withRows(rows, [&](auto count) {
-    for (int column = 0; column < columns; ++column, W += m, out += size) {
-      for (int k = 0; k < count; ++k) out[k] = W[k];
-    }
-  });
-}
+  }
+};
 
 // Numbers the movers that two or more contacts touch; returns how many they are. The others get -1.
 int numberMovers(const ContactProblem& problem, int* node) {
@@ -186,16 +186,18 @@ int ContactEquations::assembleRows(int i, int row) {
   const int m = problem_.rowCount(), rows = problem_.rows(i), first = problem_.firstRow(i);
   int diagonal = 0;  // number of the first column of contact i's own block
   for (int a = 0; active_[a] != i; ++a) diagonal += problem_.rows(active_[a]);
-  double* out = A_ + row;
-  for (int a = 0; a < active_count_; ++a) {
-    const int columns = problem_.rows(active_[a]);
-    const double* const W = problem_.W + problem_.firstRow(active_[a]) * m + first;
-    if (t.coupling == Coupling::kIdentity)
-      copyColumns(rows, W, m, columns, out, size_);
-    else
-      multiplyColumns(t.P, rows, W, m, columns, out, size_);
-    out += columns * size_;
-  }
+  withRows(rows, [&](auto count) {
+    double P_columns[kStride * kStride];
+    for (int k = 0; k < count && t.coupling != Coupling::kIdentity; ++k) {
+      for (int l = 0; l < count; ++l) P_columns[kStride * l + k] = t.P[kStride * k + l];
+    }
+    RowsOfW of{problem_.W + first, m, size_, A_ + row};
+    for (int a = 0; a < active_count_; ++a) {
+      of.W = problem_.W + problem_.firstRow(active_[a]) * m + first;
+      const int columns = problem_.rows(active_[a]);
+      t.coupling == Coupling::kIdentity ? of.copy(count, columns) : of.multiply(P_columns, count, columns);
+    }
+  });
   double* const block = A_ + diagonal * size_ + row;
   for (int k = 0; k < rows; ++k) {
     if (t.coupling == Coupling::kIdentity) {

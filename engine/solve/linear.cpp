@@ -52,27 +52,27 @@ constexpr int kUsual = 6;
   for (; i < to; ++i) y[i] -= a * x[i];
 }
 
-// y -= `count` columns of L from `from` on, at most four, times y's own numbers there: number by number in the order of
-// the columns, of which each sees all at once.
-template <int count>
-[[gnu::always_inline]] inline void subtractColumns(double* y, const double* L, int n, int from) {
-  const double* const columns = L + from * n;
-  double* const u = y + from;
-  for (int i = 1; i < std::min(kFour, n - from); ++i) {
-    for (int k = 0; k < std::min(count, i); ++k) u[i] -= u[k] * columns[k * n + from + i];
+// Four columns of L from `from` on.
+struct FourColumns {
+  const double *a, *b, *c, *d;
+  FourColumns(const double* A, int n, int from) : a(A + from * n), b(a + n), c(b + n), d(c + n) {}
+
+  // y -= the columns times y's own numbers there, over the rows below: number by number in the order of the columns, of
+  // which each sees all four at once.
+  [[gnu::always_inline]] void subtractFrom(double* y, int n, int from) const {
+    const double u0 = y[from], u1 = y[from + 1] - u0 * a[from + 1],
+                 u2 = (y[from + 2] - u0 * a[from + 2]) - u1 * b[from + 2],
+                 u3 = ((y[from + 3] - u0 * a[from + 3]) - u1 * b[from + 3]) - u2 * c[from + 3];
+    y[from + 1] = u1;
+    y[from + 2] = u2;
+    y[from + 3] = u3;
+    int i = from + kFour;
+    for (; i + kFour <= n; i += kFour)
+      fourAt(y + i) =
+          (((fourAt(y + i) - u0 * fourAt(a + i)) - u1 * fourAt(b + i)) - u2 * fourAt(c + i)) - u3 * fourAt(d + i);
+    for (; i < n; ++i) y[i] = (((y[i] - u0 * a[i]) - u1 * b[i]) - u2 * c[i]) - u3 * d[i];
   }
-  double by[count];
-  for (int k = 0; k < count; ++k) by[k] = u[k];
-  int i = from + kFour;
-  for (; i + kFour <= n; i += kFour) {
-    Four sum = fourAt(y + i);
-    for (int k = 0; k < count; ++k) sum -= by[k] * fourAt(columns + k * n + i);
-    fourAt(y + i) = sum;
-  }
-  for (; i < n; ++i) {
-    for (int k = 0; k < count; ++k) y[i] -= by[k] * columns[k * n + i];
-  }
-}
+};
 
 // In line for the six freedoms of a body, the size that nearly all have.
 template <class Size>
@@ -99,14 +99,12 @@ template <class Size>
   }
 }
 
-// Columns [from, to), at most four, by themselves, their rows above `from` done. False if a pivot is 0 or not finite.
+// Columns [from, to) by themselves, their rows above `from` done. False if a pivot is 0 or not finite.
 [[gnu::always_inline]] inline bool factorisePanel(double* A, int n, int from, int to, int* pivots) {
   for (int j = from; j < to; ++j) {
     double* const column = A + j * n;
     for (int k = from; k < j; ++k) std::swap(column[k], column[pivots[k]]);
-    if (j == from + 1) subtractColumns<1>(column, A, n, from);
-    if (j == from + 2) subtractColumns<2>(column, A, n, from);
-    if (j == from + 3) subtractColumns<3>(column, A, n, from);
+    for (int k = from; k < j; ++k) subtractScaled(column, column[k], A + k * n, k + 1, n);
     pivots[j] = pivotRow(column, j, n);
     for (int i = 0; i <= j && pivots[j] != j; ++i) std::swap(A[j + i * n], A[pivots[j] + i * n]);
     const double pivot = column[j];
@@ -122,10 +120,14 @@ template <class Size>
   int from = 0;
   for (; from + kFour < n; from += kFour) {
     if (!factorisePanel(A, n, from, from + kFour, pivots)) return false;
-    for (int j = from + kFour; j < n; ++j) {
-      double* const column = A + j * n;
-      for (int k = from; k < from + kFour; ++k) std::swap(column[k], column[pivots[k]]);
-      subtractColumns<kFour>(column, A, n, from);
+    const FourColumns panel(A, n, from);
+    const int p0 = pivots[from], p1 = pivots[from + 1], p2 = pivots[from + 2], p3 = pivots[from + 3];
+    for (double* column = A + (from + kFour) * n; column < A + n * n; column += n) {
+      std::swap(column[from], column[p0]);
+      std::swap(column[from + 1], column[p1]);
+      std::swap(column[from + 2], column[p2]);
+      std::swap(column[from + 3], column[p3]);
+      panel.subtractFrom(column, n, from);
     }
   }
   return factorisePanel(A, n, from, n, pivots);
@@ -137,7 +139,7 @@ template <class Size>
     std::swap(b[k], b[pivots[k]]);
   }
   int from = 0;
-  for (; from + kFour <= n; from += kFour) subtractColumns<kFour>(b, LU, n, from);
+  for (; from + kFour <= n; from += kFour) FourColumns(LU, n, from).subtractFrom(b, n, from);
   for (int k = from; k < n; ++k) subtractScaled(b, b[k], LU + k * n, k + 1, n);
   for (int k = n - 1; k >= 0; --k) {
     b[k] /= LU[k + k * n];
