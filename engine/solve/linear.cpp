@@ -48,6 +48,7 @@ constexpr int kUsual = 6;
 // y -= a x over rows [from, to)
 [[gnu::always_inline]] inline void subtractScaled(double* y, double a, const double* x, int from, int to) {
   int i = from;
+  for (; i < to && i % kFour != 0; ++i) y[i] -= a * x[i];  // ends with `to` where that is a multiple of four
   for (; i + kFour <= to; i += kFour) fourAt(y + i) -= a * fourAt(x + i);
   for (; i < to; ++i) y[i] -= a * x[i];
 }

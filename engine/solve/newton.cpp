@@ -126,8 +126,9 @@ class NewtonStep {
     for (int i = 0; i < problem_.contactCount(); ++i) {
       const int first = problem_.firstRow(i);
       withRows(problem_.rows(i), [&](auto rows) {
-        for (int k = first; k < first + rows; ++k) r[k] = it_.r[k] + t * dr_[k];
-        projectOntoCone(r + first, rows, problem_.friction(i), r + first);
+        double moved[kMaxContactRows];  // not `r`, whose numbers would be read back as pairs just after they were written
+        for (int k = 0; k < rows; ++k) moved[k] = it_.r[first + k] + t * dr_[first + k];
+        projectOntoCone(moved, rows, problem_.friction(i), r + first);
       });
     }
   }
