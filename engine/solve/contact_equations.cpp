@@ -59,8 +59,8 @@ bool invertBlock(double* A, int rows) {
   return true;
 }
 
-// The rows of one contact in some columns of W, one every m numbers, go to `out`, one every `size`: P W, or W where P is
-// the identity.
+// The rows of one contact in some columns of W, one every m numbers, go to `out`, one every `size`:
+// P W, or W where P is the identity.
 struct RowsOfW {
   const double* W;
   int m, size;

@@ -12,13 +12,10 @@ namespace pincer::engine {
 namespace {
 
 constexpr int kUsual = 6;
+constexpr int kFour = 4;  // columns at a time
 
-[[gnu::always_inline]] inline void takeSizes(const double* x, Four& sizes) {
-  const Four& numbers = fourAt(x);
-  sizes = numbers > -numbers ? numbers : -numbers;
-}
-
-// The first of the largest numbers from row k on, lane by lane; the last four may be looked at twice.
+// The first of the largest numbers from row k on, lane by lane; the last of them may be looked at twice.
+template <class Lanes>
 [[gnu::always_inline]] inline int pivotRow(const double* column, int k, int n) {
   double best = std::abs(column[k]), row = k;
   const auto compare = [&](double number, double its_row) {
@@ -26,30 +23,32 @@ constexpr int kUsual = 6;
     best = is_better ? number : best;
     row = is_better ? its_row : row;
   };
-  if (n - k < kFour) {
+  if (n - k < Lanes::count) {
     for (int i = k + 1; i < n; ++i) compare(std::abs(column[i]), i);
     return static_cast<int>(row);
   }
-  const double first = k;
-  Four most, sizes, rows = {first, first + 1, first + 2, first + 3};
-  takeSizes(column + k, most);
-  for (int next = k + kFour; next < n; next += kFour) {
-    const int i = std::min(next, n - kFour);
-    const double i_row = i;
-    const Four its_rows = {i_row, i_row + 1, i_row + 2, i_row + 3};
-    takeSizes(column + i, sizes);
-    rows = sizes > most ? its_rows : rows;
+  typename Lanes::Numbers most, rows;
+  for (int lane = 0; lane < Lanes::count; ++lane) {
+    most[lane] = std::abs(column[k + lane]);
+    rows[lane] = k + lane;
+  }
+  const auto first = rows - k;
+  for (int next = k + Lanes::count; next < n; next += Lanes::count) {
+    const int i = std::min(next, n - Lanes::count);
+    const auto numbers = Lanes::at(column + i), sizes = numbers > -numbers ? numbers : -numbers;
+    rows = sizes > most ? first + i : rows;
     most = sizes > most ? sizes : most;
   }
-  for (int lane = 0; lane < kFour; ++lane) compare(most[lane], rows[lane]);
+  for (int lane = 0; lane < Lanes::count; ++lane) compare(most[lane], rows[lane]);
   return static_cast<int>(row);
 }
 
 // y -= a x over rows [from, to)
+template <class Lanes>
 [[gnu::always_inline]] inline void subtractScaled(double* y, double a, const double* x, int from, int to) {
   int i = from;
-  for (; i < to && i % kFour != 0; ++i) y[i] -= a * x[i];  // ends with `to` where that is a multiple of four
-  for (; i + kFour <= to; i += kFour) fourAt(y + i) -= a * fourAt(x + i);
+  for (; i < to && i % Lanes::count != 0; ++i) y[i] -= a * x[i];  // ends with `to` where that is such a multiple
+  for (; i + Lanes::count <= to; i += Lanes::count) Lanes::at(y + i) -= a * Lanes::at(x + i);
   for (; i < to; ++i) y[i] -= a * x[i];
 }
 
@@ -60,6 +59,7 @@ struct FourColumns {
 
   // y -= the columns times y's own numbers there, over the rows below: number by number in the order of the columns, of
   // which each sees all four at once.
+  template <class Lanes>
   [[gnu::always_inline]] void subtractFrom(double* y, int n, int from) const {
     const double u0 = y[from], u1 = y[from + 1] - u0 * a[from + 1],
                  u2 = (y[from + 2] - u0 * a[from + 2]) - u1 * b[from + 2],
@@ -68,9 +68,10 @@ struct FourColumns {
     y[from + 2] = u2;
     y[from + 3] = u3;
     int i = from + kFour;
-    for (; i + kFour <= n; i += kFour)
-      fourAt(y + i) =
-          (((fourAt(y + i) - u0 * fourAt(a + i)) - u1 * fourAt(b + i)) - u2 * fourAt(c + i)) - u3 * fourAt(d + i);
+    for (; i + Lanes::count <= n; i += Lanes::count)
+      Lanes::at(y + i) =
+          (((Lanes::at(y + i) - u0 * Lanes::at(a + i)) - u1 * Lanes::at(b + i)) - u2 * Lanes::at(c + i)) -
+          u3 * Lanes::at(d + i);
     for (; i < n; ++i) y[i] = (((y[i] - u0 * a[i]) - u1 * b[i]) - u2 * c[i]) - u3 * d[i];
   }
 };
@@ -83,7 +84,7 @@ template <class Size>
     const double pivot = column[k];
     if (!(pivot > 0) || !std::isfinite(pivot)) return false;
     const double inverse = 1 / pivot;
-    for (int j = k + 1; j < n; ++j) subtractScaled(A + j * n, column[j] * inverse, column, j, n);
+    for (int j = k + 1; j < n; ++j) subtractScaled<TwoLanes>(A + j * n, column[j] * inverse, column, j, n);
     for (int i = k + 1; i < n; ++i) column[i] *= inverse;
   }
   return true;
@@ -92,7 +93,7 @@ template <class Size>
 template <class Size>
 [[gnu::always_inline]] inline void solve(const double* LDLT, Size n, double* b) {
   for (int k = 0; k < n; ++k) {
-    subtractScaled(b, b[k], LDLT + k * n, k + 1, n);
+    subtractScaled<TwoLanes>(b, b[k], LDLT + k * n, k + 1, n);
     b[k] /= LDLT[k + k * n];
   }
   for (int k = n - 1; k >= 0; --k) {
@@ -101,12 +102,13 @@ template <class Size>
 }
 
 // Columns [from, to) by themselves, their rows above `from` done. False if a pivot is 0 or not finite.
+template <class Lanes>
 [[gnu::always_inline]] inline bool factorisePanel(double* A, int n, int from, int to, int* pivots) {
   for (int j = from; j < to; ++j) {
     double* const column = A + j * n;
     for (int k = from; k < j; ++k) std::swap(column[k], column[pivots[k]]);
-    for (int k = from; k < j; ++k) subtractScaled(column, column[k], A + k * n, k + 1, n);
-    pivots[j] = pivotRow(column, j, n);
+    for (int k = from; k < j; ++k) subtractScaled<Lanes>(column, column[k], A + k * n, k + 1, n);
+    pivots[j] = pivotRow<Lanes>(column, j, n);
     for (int i = 0; i <= j && pivots[j] != j; ++i) std::swap(A[j + i * n], A[pivots[j] + i * n]);
     const double pivot = column[j];
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) return false;
@@ -117,10 +119,11 @@ template <class Size>
 }
 
 // Four columns at a time, and then all to the right of them, which don't wait for each other.
+template <class Lanes>
 [[gnu::always_inline]] inline bool factoriseColumns(double* A, int n, int* pivots) {
   int from = 0;
   for (; from + kFour < n; from += kFour) {
-    if (!factorisePanel(A, n, from, from + kFour, pivots)) return false;
+    if (!factorisePanel<Lanes>(A, n, from, from + kFour, pivots)) return false;
     const FourColumns panel(A, n, from);
     const int p0 = pivots[from], p1 = pivots[from + 1], p2 = pivots[from + 2], p3 = pivots[from + 3];
     for (double* column = A + (from + kFour) * n; column < A + n * n; column += n) {
@@ -128,34 +131,35 @@ template <class Size>
       std::swap(column[from + 1], column[p1]);
       std::swap(column[from + 2], column[p2]);
       std::swap(column[from + 3], column[p3]);
-      panel.subtractFrom(column, n, from);
+      panel.subtractFrom<Lanes>(column, n, from);
     }
   }
-  return factorisePanel(A, n, from, n, pivots);
+  return factorisePanel<Lanes>(A, n, from, n, pivots);
 }
 
+template <class Lanes>
 [[gnu::always_inline]] inline void solveColumns(const double* LU, int n, const int* pivots, double* b) {
   for (int k = 0; k < n; ++k) {
     PINCER_ASSERT(k <= pivots[k] && pivots[k] < n);
     std::swap(b[k], b[pivots[k]]);
   }
   int from = 0;
-  for (; from + kFour <= n; from += kFour) FourColumns(LU, n, from).subtractFrom(b, n, from);
-  for (int k = from; k < n; ++k) subtractScaled(b, b[k], LU + k * n, k + 1, n);
+  for (; from + kFour <= n; from += kFour) FourColumns(LU, n, from).subtractFrom<Lanes>(b, n, from);
+  for (int k = from; k < n; ++k) subtractScaled<Lanes>(b, b[k], LU + k * n, k + 1, n);
   for (int k = n - 1; k >= 0; --k) {
     b[k] /= LU[k + k * n];
-    subtractScaled(b, b[k], LU + k * n, 0, k);
+    subtractScaled<Lanes>(b, b[k], LU + k * n, 0, k);
   }
 }
 
 }  // namespace
 
 bool factoriseLu(double* A, int n, int* pivots) {
-  return wide([=] [[gnu::always_inline]] { return factoriseColumns(A, n, pivots); });
+  return wide([=] [[gnu::always_inline]] (auto lanes) { return factoriseColumns<decltype(lanes)>(A, n, pivots); });
 }
 
 void solveLu(const double* LU, int n, const int* pivots, double* b) {
-  wide([=] [[gnu::always_inline]] { solveColumns(LU, n, pivots, b); });
+  wide([=] [[gnu::always_inline]] (auto lanes) { solveColumns<decltype(lanes)>(LU, n, pivots, b); });
 }
 
 bool factoriseLdlt(double* A, int n) {

@@ -126,7 +126,7 @@ class NewtonStep {
     for (int i = 0; i < problem_.contactCount(); ++i) {
       const int first = problem_.firstRow(i);
       withRows(problem_.rows(i), [&](auto rows) {
-        double moved[kMaxContactRows];  // not `r`, whose numbers would be read back as pairs just after they were written
+        double moved[kMaxContactRows];  // not `r`: a pair read back just after its numbers were written waits for them
         for (int k = 0; k < rows; ++k) moved[k] = it_.r[first + k] + t * dr_[first + k];
         projectOntoCone(moved, rows, problem_.friction(i), r + first);
       });

@@ -40,21 +40,23 @@ void fillBlock(const ContactProblem& problem, const double* scale, int i, int j,
 }
 
 // Numbers of W r that stay in registers, column by column.
-template <int fours>
+template <class Lanes, int count>
 [[gnu::always_inline]] inline void multiplyTile(const double* W, const double* r, int m, double* out) {
-  Four sum[fours] = {};
+  typename Lanes::Numbers sum[count] = {};
   for (int l = 0; l < m; ++l, W += m) {
-    for (int k = 0; k < fours; ++k) sum[k] += fourAt(W + kFour * k) * r[l];
+    for (int k = 0; k < count; ++k) sum[k] += Lanes::at(W + Lanes::count * k) * r[l];
   }
-  for (int k = 0; k < fours; ++k) fourAt(out + kFour * k) = sum[k];
+  for (int k = 0; k < count; ++k) Lanes::at(out + Lanes::count * k) = sum[k];
 }
 
 // out = W r
+template <class Lanes>
 [[gnu::always_inline]] inline void multiplyDense(const double* W, const double* r, int m, double* out) {
   constexpr int kTile = 4;
   int row = 0;
-  for (; row + kTile * kFour <= m; row += kTile * kFour) multiplyTile<kTile>(W + row, r, m, out + row);
-  for (; row + kFour <= m; row += kFour) multiplyTile<1>(W + row, r, m, out + row);
+  for (; row + kTile * Lanes::count <= m; row += kTile * Lanes::count)
+    multiplyTile<Lanes, kTile>(W + row, r, m, out + row);
+  for (; row + Lanes::count <= m; row += Lanes::count) multiplyTile<Lanes, 1>(W + row, r, m, out + row);
   for (; row < m; ++row) {
     double sum = 0;
     for (int l = 0; l < m; ++l) sum += W[l * m + row] * r[l];
@@ -103,7 +105,8 @@ void scaleSides(const ContactProblem& problem, SolverScratch& scratch) {
 
 void multiply(const ScaledProblem& problem, const double* r, double* out) {
   const int m = problem.rowCount();
-  if (problem.W) return wide([&] [[gnu::always_inline]] { multiplyDense(problem.W, r, m, out); });
+  if (problem.W)
+    return wide([&] [[gnu::always_inline]] (auto lanes) { multiplyDense<decltype(lanes)>(problem.W, r, m, out); });
   for (int row = 0; row < m; ++row) out[row] = 0;
   std::fill(problem.y, problem.y + kMoverFreedoms * problem.movers, 0.0);
   for (int i = 0; i < problem.contactCount(); ++i) {
