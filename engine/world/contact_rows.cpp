@@ -168,7 +168,7 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
     }
   }
   if (scratch.h > 0) {
-    alignStickBiases(scratch.h, rates.tangent, scratch);
+    alignStickBiases(model, scratch.h, rates.tangent, scratch);
     shareFriction(scratch);
   }
 }

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "pincer/engine/solve/linear.h"
+#include "pincer/engine/world/joints.h"
 
 namespace pincer::engine {
 namespace {
@@ -150,9 +151,15 @@ void alignPoint(std::span<Contact> contacts, int first, double h, double offset_
 
 bool isOfPoint(const Contact& c) { return c.a.kind == SideKind::kPoint || c.b.kind == SideKind::kPoint; }
 
+bool isFree(const WorldModel& model, const Side& side) {
+  if (side.kind != SideKind::kBody) return false;
+  const BodyModel& body = model.bodies[static_cast<std::size_t>(side.index)];
+  return body.dynamic && !isJoined(body);
+}
+
 }  // namespace
 
-void alignStickBiases(double h, double offset_rate, WorldScratch& scratch) {
+void alignStickBiases(const WorldModel& model, double h, double offset_rate, WorldScratch& scratch) {
   if (!(offset_rate > 0)) return;
   const std::span<Contact> contacts = scratch.contacts;
   for (std::size_t first = 0; first < contacts.size();) {
@@ -160,8 +167,10 @@ void alignStickBiases(double h, double offset_rate, WorldScratch& scratch) {
     while (end < contacts.size() && isOfSameTwo(contacts[first], contacts[end])) ++end;
     if (end > first + 1) {
       const std::span<Contact> pair = contacts.subspan(first, end - first);
-      isOfPoint(pair.front()) ? alignPoint(pair, static_cast<int>(first), h, offset_rate, scratch)
-                              : alignPair(pair, static_cast<int>(first), h, offset_rate, scratch);
+      if (!isOfPoint(pair.front()))
+        alignPair(pair, static_cast<int>(first), h, offset_rate, scratch);
+      else if (!isFree(model, pair.front().a) && !isFree(model, pair.front().b))
+        alignPoint(pair, static_cast<int>(first), h, offset_rate, scratch);
     }
     first = end;
   }

@@ -28,6 +28,6 @@ constexpr double kNormalWeight = 10;   // w_n, beside 1 of tangential rows: gaps
 // and offset_C of scratch.contacts (sorted by id), and corrects scratch.q. Likewise of points that
 // stick at one of several. Allocates nothing.
 //   offset_rate  bias_T = offset_rate (offset_T + h v_start_T / 2) [1/s]
-void alignStickBiases(double h, double offset_rate, WorldScratch& scratch);
+void alignStickBiases(const WorldModel& model, double h, double offset_rate, WorldScratch& scratch);
 
 }  // namespace pincer::engine
