@@ -15,7 +15,8 @@
 // Contacts of one flat face are left as they are: their gaps don't couple to their offsets, which alignFaces
 // (advance.cpp) keeps consistent at less cost. A driven point has three freedoms, and two contacts hold it six-fold: in
 // a steep groove what is left of a contradiction squeezed it with 1e9 N. Its Omega is zero, sliding contacts take part
-// with their normals, and normal biases become n_i . V too.
+// with their normals, and normal biases become n_i . V too. Not on a free body: that turns, and with V alone the point
+// would walk over it to close gaps that a turn closes. The two are a loop for island_bias.h, which knows what moves.
 #pragma once
 #include "pincer/engine/world/scratch.h"
 

@@ -252,6 +252,17 @@ TEST(PadOnMesh, DoesntRockACubeWithRoundEdges) {
   }
 }
 
+// The gaps of several places asked for a way along the pad instead of a turn of what it holds, and the offsets of what
+// sticks followed: it walked over the hills by 8 um per second.
+TEST(PadOnMesh, DoesntWalkOverHills) {
+  const double height = 0.03;  // of the radius
+  const Creep creep = creepBetweenPads(contact::bumpySphere(0.02, height, 20, 24), {Quat::Identity(), Vec3(0, 0, 0.1)},
+                                       0.02 * (1 + height) + 2e-3, 0.0095, 0, Vec3(0.2, -0.1, 0.2));
+  EXPECT_EQ(creep.flagged, 0);
+  EXPECT_LT(creep.way, 1e-12);
+  EXPECT_LT(creep.turn, 1e-9);
+}
+
 // A barrel between two pads buzzed, as each pad's edges and its middle took turns, and a spool rocked off.
 TEST(PadOnMesh, HoldsABarrelAndASpool) {
   for (const double bulge : {0.003, -0.003}) {
