@@ -253,7 +253,7 @@ TEST(PadOnMesh, DoesntRockACubeWithRoundEdges) {
 }
 
 // The gaps of several places asked for a way along the pad instead of a turn of what it holds, and the offsets of what
-// sticks followed: it walked over the hills by 8 um per second.
+// sticks followed: it walked over the hills by 36 um in three seconds.
 TEST(PadOnMesh, DoesntWalkOverHills) {
   const double height = 0.03;  // of the radius
   const Creep creep = creepBetweenPads(contact::bumpySphere(0.02, height, 20, 24), {Quat::Identity(), Vec3(0, 0, 0.1)},
