@@ -26,17 +26,18 @@ struct PairPlace {
 
 class FoundPairs {
  public:
-  // Memory for some `pairs`; two that share a place forget each other. None for 0.
+  // Memory for some `pairs`; where more than four share a row, some forget each other. None for 0.
   explicit FoundPairs(int pairs);
 
   // Points of the shapes whose contacts are numbered `pair` (contactId without its feature); find(points) where these
   // aren't known. Valid until the next call.
   template <class Find>
   const contact::PairPoints& pointsOf(std::uint64_t pair, const PairPlace& place, Find find) {
-    Entry& entry = entries_[placeOf(pair)];
+    const std::size_t n = placeOf(pair);
+    Entry& entry = entries_[n];
     const std::array<double, 18> numbers = place.numbers();
-    if (entry.pair == pair && isSame(entry.numbers, numbers)) return entry.points;
-    entry.pair = pair;
+    if (pairs_[n] == pair && isSame(entry.numbers, numbers)) return entry.points;
+    pairs_[n] = pair;
     entry.numbers = numbers;
     find(entry.points);
     return entry.points;
@@ -44,17 +45,19 @@ class FoundPairs {
 
  private:
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
+  static constexpr std::size_t kRow = 4;  // places for a pair: of one, a third of the pairs of a wall would share it
   struct Entry {
-    std::uint64_t pair = kNone;
     std::array<double, 18> numbers;
     contact::PairPoints points;
   };
 
   static bool isSame(const std::array<double, 18>& a, const std::array<double, 18>& b);  // by their bits
+  // Where the pair is, or is to be: in its row, in the first place that is free, or in one that its number names.
   std::size_t placeOf(std::uint64_t pair) const;
 
+  std::vector<std::uint64_t> pairs_;  // of `entries_`, apart from them: a row is one line of the cache
   std::vector<Entry> entries_;
-  int bits_ = 0;  // 2^bits_ entries
+  int bits_ = 0;  // 2^bits_ rows
 };
 
 }  // namespace pincer::engine
