@@ -7,6 +7,7 @@
 #include "pincer/engine/world/impact.h"
 #include "pincer/engine/world/island_sleep.h"
 #include "pincer/engine/world/thin_contacts.h"
+#include "pincer/engine/world/unchanged_pairs.h"
 
 namespace pincer::engine {
 namespace {
@@ -85,6 +86,7 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
       model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   noteFastPair(model, pair.a, pair.b, scratch);
+  if (keepContacts(model, state, pair, scratch)) return;
   const auto collide = [&](const ColliderModel& ca, const Pose& X_WA, const ColliderModel& cb, const Pose& X_WB) {
     chargeQuery(ca, cb, scratch);
     const contact::PairPoints& points = pointsOf(model, state, ca, cb, {X_WA, X_WB, margin}, found, scratch);

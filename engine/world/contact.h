@@ -62,6 +62,9 @@ struct Contact {
   bool yields = false;  // walls close on what is between them (solve/squeeze.h)
   // Remembered (remember_contacts.cpp).
   bool still = false;  // nothing of it or of its bodies changed in this tick, where that was asked
+  // Kept (unchanged_pairs.h).
+  int same_as = -1;      // the one of the last attempt that it is up to the solve; -1: it was found
+  bool as_asked = true;  // the solve left what it is asked for as it was
 
   Contact() {}  // NOLINT(modernize-use-equals-default): a defaulted one would clear all of a new contact
   Vec3 n_W() const { return R_WC.col(2); }

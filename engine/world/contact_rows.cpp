@@ -11,6 +11,7 @@
 #include "pincer/engine/world/push_out.h"
 #include "pincer/engine/world/rocking.h"
 #include "pincer/engine/world/stick_bias.h"
+#include "pincer/engine/world/unchanged_pairs.h"
 #include "pincer/engine/world/wedge.h"
 
 namespace pincer::engine {
@@ -164,13 +165,14 @@ void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch
     }
     for (int i = first; i < end; ++i) {
       scratch.first_row[i + 1] = scratch.first_row[i] + rowsOf(scratch.contacts[i].material);
-      fillContact(model, rates, scratch, i);
+      scratch.contacts[i].same_as >= 0 ? keepRows(rates.longer, scratch, i) : fillContact(model, rates, scratch, i);
     }
   }
   if (scratch.h > 0) {
     alignStickBiases(model, scratch.h, rates.tangent, scratch);
     shareFriction(scratch);
   }
+  noteMemories(state, scratch);
 }
 
 }  // namespace pincer::engine

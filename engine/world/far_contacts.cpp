@@ -60,10 +60,17 @@ void markFarContacts(const WorldModel& model, WorldScratch& scratch) {
 bool haveFarClosed(const WorldModel& model, WorldScratch& scratch) {
   if (scratch.far_contacts == 0) return false;
   int closed = 0;
+  const Contact* before = nullptr;
+  Motion end_a, end_b;
   for (Contact& c : scratch.contacts) {
     if (!c.far) continue;
+    if (!before || !isOfSameTwo(*before, c)) {
+      end_a = endMotion(model, scratch, c.a);
+      end_b = endMotion(model, scratch, c.b);
+    }
+    before = &c;
     double v_C[kMaxContactRows];
-    relativeVelocity(c, endMotion(model, scratch, c.a), endMotion(model, scratch, c.b), kTorsionRow, v_C);
+    relativeVelocity(c, end_a, end_b, kTorsionRow, v_C);
     for (int k = 0; k < kTorsionRow; ++k) c.u_C[k] = v_C[k] + c.bias_C[k];
     if (c.u_C[kNormalRow] >= 0) continue;
     c.far = false;

@@ -22,6 +22,7 @@ IslandScratch::IslandScratch(const WorldModel& model) {
   for (std::vector<int>* per_mover : {&parent, &number, &island_of}) per_mover->resize(movers);
   first_row.resize(2 * n + 1);
   sides.resize(n);
+  filled.resize(n);
   root_inertia.resize(movers);
   mu.resize(n);
   for (std::vector<double>* per_row : {&q, &r, &u}) per_row->resize(m);

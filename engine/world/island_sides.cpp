@@ -36,6 +36,15 @@ bool isCalm(const WorldModel& model, const Contact& c) {
   return is_slow(c.mover_a->start, c.arm_a_W) && is_slow(c.mover_b->start, c.arm_b_W);
 }
 
+// True if they are those of the last solve, and the contact is the one of the last attempt (unchanged_pairs.h). Notes
+// that they are filled.
+bool areFilled(const Contact& c, int number_a, int number_b, std::int64_t solve, FilledSides& filled) {
+  const bool are_filled = c.same_as >= 0 && filled.id == c.id && filled.solve == solve - 1 &&
+                          filled.number_a == number_a && filled.number_b == number_b;
+  filled = {c.id, solve, number_a, number_b};
+  return are_filled;
+}
+
 // Of a link that two blocks move, against what doesn't move: the inboard one takes the place of that.
 void fillInboardSide(const WorldModel& model, WorldScratch& scratch, int i, Island& island, IslandScratch& s,
                      ContactSides& sides) {
@@ -95,17 +104,20 @@ void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, I
   const Contact* const contacts = scratch.contacts.data();
   const ContactEnds* const all_ends = s.ends.data();
   ContactSides* const all_sides = s.sides.data() + island.work;
+  FilledSides* const all_filled = s.filled.data() + island.work;
   for (int n = 0; n < island.contacts; ++n) {
     const int i = order[n], rows = from_row[i + 1] - from_row[i];
     const Contact& c = contacts[i];
     const ContactEnds ends = all_ends[i];
     ContactSides& sides = all_sides[n];
-    fillSide(model, scratch, c, rows, true, ends.a, numberOf(model, scratch, c.a, ends.a, island, s), s.root_inertia,
-             sides[0]);
-    fillSide(model, scratch, c, rows, false, ends.b, numberOf(model, scratch, c.b, ends.b, island, s), s.root_inertia,
-             sides[1]);
-    if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
-    if (s.sides_per_contact > 2) fillInboardSide(model, scratch, i, island, s, sides);
+    const int a = numberOf(model, scratch, c.a, ends.a, island, s),
+              b = numberOf(model, scratch, c.b, ends.b, island, s);
+    if (!areFilled(c, a, b, s.solves, all_filled[n])) {
+      fillSide(model, scratch, c, rows, true, ends.a, a, s.root_inertia, sides[0]);
+      fillSide(model, scratch, c, rows, false, ends.b, b, s.root_inertia, sides[1]);
+      if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
+      if (s.sides_per_contact > 2) fillInboardSide(model, scratch, i, island, s, sides);
+    }
     island.settling = std::max(island.settling, c.settling);
     island.calm = island.calm && island.contacts > kDenseContacts && isCalm(model, c);
   }

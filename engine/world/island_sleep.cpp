@@ -51,6 +51,7 @@ void putContactsAside(const WorldState& state, WorldScratch& scratch) {
     if (isAsleep(sleep, c)) sleep.contacts.push_back({c, {}, 0});
   }
   std::erase_if(scratch.contacts, [&](const Contact& c) { return isAsleep(sleep, c); });
+  scratch.last.is_solved = false;
   std::sort(sleep.contacts.begin(), sleep.contacts.end(),
             [](const SleepingContact& x, const SleepingContact& y) { return x.contact.id < y.contact.id; });
   sleep.room = scratch.contacts.capacity() - sleep.contacts.size();

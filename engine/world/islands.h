@@ -27,6 +27,7 @@ struct Island {
   bool calm = true;             // all that moves of it is as good as at rest
   bool has_many_sides = false;  // its contacts' are in many_sides
   bool has_sides = true;        // they are filled: of grips, whose solve needs none as a rule, later if at all
+  bool rests = false;           // it was left as it is
   bool holds_trees = false;     // contacts of it push on trees, whose drives come to rest over many ticks
   // Filled by solveIslands, without a value before.
   // The solver's view: of one among several islands in IslandScratch, of the only
@@ -46,6 +47,13 @@ struct ContactEnds {
   int a, b;
 };
 
+// What IslandScratch::sides at a place were filled for.
+struct FilledSides {
+  std::uint64_t id = 0;  // contact
+  std::int64_t solve = -1;
+  int number_a = -1, number_b = -1;  // of its movers
+};
+
 // Working memory. All arrays but `order` and those per mover begin at Island::work.
 struct IslandScratch {
   explicit IslandScratch(const WorldModel& model);
@@ -62,6 +70,8 @@ struct IslandScratch {
   std::vector<ContactEnds> ends;  // per contact, in the order of scratch.contacts
   std::vector<int> first_row;     // island by island, each from 0: entries 2 Island::work ..
   std::vector<ContactSides> sides;
+  std::vector<FilledSides> filled;  // as `sides`
+  std::int64_t solves = 0;          // of islands, all together
   // Of worlds with trees: blocks are movers after bodies and points, and so is each joint row's own.
   int first_block = 0;            // the first one of those movers
   std::vector<int> block_parent;  // per block: the mover of the block before it on the way to the base, -1

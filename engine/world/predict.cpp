@@ -7,6 +7,7 @@
 #include "pincer/engine/world/joints.h"
 #include "pincer/engine/world/stages.h"
 #include "pincer/engine/world/tree_motion.h"
+#include "pincer/engine/world/unchanged_pairs.h"
 
 namespace pincer::engine {
 namespace {
@@ -211,14 +212,18 @@ void predictBodies(const WorldModel& model, const WorldState& state, WorldScratc
     } else if (model.bodies[i].tree >= 0) {
       continue;  // predictTrees
     } else if (model.bodies[i].dynamic) {
-      if (!isIdle(scratch, static_cast<int>(i)))
-        predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, forceOn(scratch, i), h, scratch.bodies[i]);
+      if (isIdle(scratch, static_cast<int>(i))) continue;
+      const BodyCourse before = courseOf(scratch.bodies[i]);
+      predictBody(model.bodies[i], state.bodies[i], dv_gravity_W, forceOn(scratch, i), h, scratch.bodies[i]);
+      noteCourse(before, model.bodies[i].joint_group < 0, scratch, scratch.bodies[i]);
     } else {
       BodyScratch& body = scratch.bodies[i];
+      const BodyCourse before = courseOf(body);
       body.X_WI_mid = state.bodies[i].X_WI;
       if (const int n = model.bodies[i].motion; n >= 0)
         predictDriven(state.bodies[i], state.driven_w_W[n], scratch.motion_inputs[n], h, body);
       place(model.bodies[i], scratch.bodies[i]);
+      noteCourse(before, !model.bodies[i].driven, scratch, body);
     }
   }
 }
@@ -233,7 +238,7 @@ void predict(const WorldModel& model, const WorldState& state, WorldScratch& scr
                  scratch.points[i]);
   }
   if (!model.joint_groups.empty()) predictJoints(model, scratch);
-  scratch.contacts.clear();
+  beginContacts(state, scratch);
   scratch.fast_pairs.clear();
 }
 
@@ -265,7 +270,7 @@ void predictImpact(const WorldModel& model, const WorldState& state, WorldScratc
   }
   if (!model.joint_groups.empty()) predictJoints(model, scratch);
   if (!model.trees.empty()) predictTreeImpacts(model, state, scratch);
-  scratch.contacts.clear();
+  forgetContacts(scratch);
   scratch.fast_pairs.clear();
 }
 

@@ -86,6 +86,7 @@ int recallByIdentity(const WorldScratch& scratch, std::span<Contact> contacts,
   int missing = 0;
   const ContactMemory *m = memories.data(), *const end = m + memories.size();
   for (Contact& c : contacts) {
+    if (c.same_as >= 0) continue;
     place(scratch, c);
     while (m != end && m->id < c.id) ++m;
     const bool found = m != end && m->id == c.id;
@@ -155,7 +156,7 @@ std::span<const ContactMemory> recallContacts(std::span<const ContactMemory> mem
   if (recallByIdentity(scratch, contacts, left) == 0) return left;
   recallByPlace(memories, contacts);
   for (Contact& c : contacts) {
-    if (c.a.kind == SideKind::kBody) recall(c);
+    if (c.a.kind == SideKind::kBody && c.same_as < 0) recall(c);
   }
   return left;
 }

@@ -69,7 +69,12 @@ WorldSleep::WorldSleep(const WorldModel& model)
 }
 
 WorldScratch::WorldScratch(const WorldModel& model)
-    : h(model.options.h), patches(patchesFor(model)), found_pairs(pairsFor(model)), islands(model), sleep(model) {
+    : h(model.options.h),
+      patches(patchesFor(model)),
+      found_pairs(pairsFor(model)),
+      last(model),
+      islands(model),
+      sleep(model) {
   PINCER_DEMAND(fitTheTick(model),
                 "WorldScratch: options.h isn't the tick that the model was built for; build it again (WorldBuilder)");
   const auto contact_count = static_cast<std::size_t>(model.options.max_contacts);

@@ -29,8 +29,9 @@ struct MoverScratch {
   bool touched = false;           // some contact pushes on it
   // and the last tick's impulses still fit for all that do: slower than this it is at rest (rest.h) [m/s]
   double rest_speed = 0;
-  bool closing = false;  // and one of those closes in this tick
-  bool still = false;    // of bodies: nothing of its state changed in this tick
+  bool closing = false;    // and one of those closes in this tick
+  bool still = false;      // of bodies: nothing of its state changed in this tick
+  bool unchanged = false;  // of bodies: its course is that of the last attempt, see unchanged_pairs.h
 };
 // Of a body that rocks in this part of the tick, see rocking.h.
 struct Rocking {
@@ -175,6 +176,23 @@ struct TriedImpulse {
   ContactVector r;
 };
 
+// The contacts of the last attempt at a tick, or at a part of it (unchanged_pairs.h).
+struct LastAttempt {
+  explicit LastAttempt(const WorldModel& model);
+
+  bool is_wanted;                // in this world
+  bool is_solved = false;        // scratch.contacts are those of an attempt that is done
+  bool serves = false;           // `contacts` may be those of this one, too
+  bool something_slept = false;  // then
+  double h = 0, h_last = 0;      // of that attempt [s]
+  std::vector<Contact> contacts;
+  std::vector<ContactMemory> memories;  // that it began with
+  std::vector<int> first_row;
+  std::vector<double> q;
+  std::size_t kept = 0;                                      // contacts, in this attempt
+  std::size_t contact = 0, memory_then = 0, memory_now = 0;  // where the next pair's are looked for
+};
+
 struct WorldScratch {
   explicit WorldScratch(const WorldModel& model);
 
@@ -216,6 +234,7 @@ struct WorldScratch {
   std::vector<double> mu, q, r, u;
   contact::PatchCache patches;
   FoundPairs found_pairs;
+  LastAttempt last;
   IslandScratch islands;
   std::unique_ptr<BroadPhase> broad_phase;  // null where every pair is looked at
   SolveResult solve;

@@ -165,7 +165,7 @@ void alignStickBiases(const WorldModel& model, double h, double offset_rate, Wor
   for (std::size_t first = 0; first < contacts.size();) {
     std::size_t end = first + 1;
     while (end < contacts.size() && isOfSameTwo(contacts[first], contacts[end])) ++end;
-    if (end > first + 1) {
+    if (end > first + 1 && contacts[first].same_as < 0) {
       const std::span<Contact> pair = contacts.subspan(first, end - first);
       if (!isOfPoint(pair.front()))
         alignPair(pair, static_cast<int>(first), h, offset_rate, scratch);

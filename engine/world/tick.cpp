@@ -18,6 +18,7 @@
 #include "pincer/engine/world/state_checks.h"
 #include "pincer/engine/world/tree_motion.h"
 #include "pincer/engine/world/tried_impulses.h"
+#include "pincer/engine/world/unchanged_pairs.h"
 
 namespace pincer::engine {
 namespace {
@@ -336,6 +337,7 @@ class Tick {
       solveContacts(model_, scratch_);
       gatherImpulses(model_, scratch_);
     } while (haveFarClosed(model_, scratch_));
+    noteSolved(state_, scratch_);
   }
 
   // Cost of a part of a tick besides its solve.
