@@ -47,7 +47,7 @@ struct ContactEnds {
   int a, b;
 };
 
-// What IslandScratch::sides at a place were filled for.
+// The solve and the contact that IslandScratch::sides at a place were filled for.
 struct FilledSides {
   std::uint64_t id = 0;  // contact
   std::int64_t solve = -1;

@@ -67,7 +67,7 @@ TEST(FoundPairs, PairsThatShareAPlaceDontTakeEachOthersPoints) {
   for (std::uint64_t pair = 0; pair < 100; ++pair) EXPECT_EQ(searcher.gapOf(pair << 32, place), pair + 1.0);
 }
 
-// A wall of 200 bricks searched for 44 pairs in every tick, at rest: they shared places.
+// A wall of 200 bricks searched for some of its pairs in every tick, at rest: they shared places.
 TEST(FoundPairs, PairsOfAWallAtRestAreSearchedForOnce) {
   Searcher searcher{FoundPairs(3200)};
   const PairPlace place{Pose{}, Pose{}, 1e-3, Vec3::UnitZ()};
