@@ -21,7 +21,7 @@ struct FourLanes {
 };
 
 // act(lanes), a lambda that is always inlined, compiled once for either kind of processor.
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(PINCER_TWO_LANES)
 template <class Act>
 [[gnu::target("avx2"), gnu::noinline]] auto withFourLanes(const Act& act) {
   return act(FourLanes());
