@@ -155,11 +155,12 @@ template <class Lanes>
 }  // namespace
 
 bool factoriseLu(double* A, int n, int* pivots) {
-  return wide([=] [[gnu::always_inline]] (auto lanes) { return factoriseColumns<decltype(lanes)>(A, n, pivots); });
+  return wide([=](auto lanes)
+                  __attribute__((always_inline)) { return factoriseColumns<decltype(lanes)>(A, n, pivots); });
 }
 
 void solveLu(const double* LU, int n, const int* pivots, double* b) {
-  wide([=] [[gnu::always_inline]] (auto lanes) { solveColumns<decltype(lanes)>(LU, n, pivots, b); });
+  wide([=](auto lanes) __attribute__((always_inline)) { solveColumns<decltype(lanes)>(LU, n, pivots, b); });
 }
 
 bool factoriseLdlt(double* A, int n) {

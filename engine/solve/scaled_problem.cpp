@@ -106,7 +106,8 @@ void scaleSides(const ContactProblem& problem, SolverScratch& scratch) {
 void multiply(const ScaledProblem& problem, const double* r, double* out) {
   const int m = problem.rowCount();
   if (problem.W)
-    return wide([&] [[gnu::always_inline]] (auto lanes) { multiplyDense<decltype(lanes)>(problem.W, r, m, out); });
+    return wide([&](auto lanes)
+                    __attribute__((always_inline)) { multiplyDense<decltype(lanes)>(problem.W, r, m, out); });
   for (int row = 0; row < m; ++row) out[row] = 0;
   std::fill(problem.y, problem.y + kMoverFreedoms * problem.movers, 0.0);
   for (int i = 0; i < problem.contactCount(); ++i) {
