@@ -14,33 +14,16 @@ namespace {
 constexpr int kUsual = 6;
 constexpr int kFour = 4;  // columns at a time
 
-// The first of the largest numbers from row k on, lane by lane; the last of them may be looked at twice.
-template <class Lanes>
-[[gnu::always_inline]] inline int pivotRow(const double* column, int k, int n) {
-  double best = std::abs(column[k]), row = k;
-  const auto compare = [&](double number, double its_row) {
-    const bool is_better = number > best || (number == best && its_row < row);
-    best = is_better ? number : best;
-    row = is_better ? its_row : row;
-  };
-  if (n - k < Lanes::count) {
-    for (int i = k + 1; i < n; ++i) compare(std::abs(column[i]), i);
-    return static_cast<int>(row);
+// The first of the largest numbers from row k on.
+int pivotRow(const double* column, int k, int n) {
+  double best = std::abs(column[k]);
+  int row = k;
+  for (int i = k + 1; i < n; ++i) {
+    const double size = std::abs(column[i]);
+    row = size > best ? i : row;
+    best = size > best ? size : best;
   }
-  typename Lanes::Numbers most, rows;
-  for (int lane = 0; lane < Lanes::count; ++lane) {
-    most[lane] = std::abs(column[k + lane]);
-    rows[lane] = k + lane;
-  }
-  const auto first = rows - k;
-  for (int next = k + Lanes::count; next < n; next += Lanes::count) {
-    const int i = std::min(next, n - Lanes::count);
-    const auto numbers = Lanes::at(column + i), sizes = numbers > -numbers ? numbers : -numbers;
-    rows = sizes > most ? first + i : rows;
-    most = sizes > most ? sizes : most;
-  }
-  for (int lane = 0; lane < Lanes::count; ++lane) compare(most[lane], rows[lane]);
-  return static_cast<int>(row);
+  return row;
 }
 
 // y -= a x over rows [from, to)
@@ -84,7 +67,7 @@ template <class Size>
     const double pivot = column[k];
     if (!(pivot > 0) || !std::isfinite(pivot)) return false;
     const double inverse = 1 / pivot;
-    for (int j = k + 1; j < n; ++j) subtractScaled<TwoLanes>(A + j * n, column[j] * inverse, column, j, n);
+    for (int j = k + 1; j < n; ++j) subtractScaled<NarrowLanes>(A + j * n, column[j] * inverse, column, j, n);
     for (int i = k + 1; i < n; ++i) column[i] *= inverse;
   }
   return true;
@@ -93,7 +76,7 @@ template <class Size>
 template <class Size>
 [[gnu::always_inline]] inline void solve(const double* LDLT, Size n, double* b) {
   for (int k = 0; k < n; ++k) {
-    subtractScaled<TwoLanes>(b, b[k], LDLT + k * n, k + 1, n);
+    subtractScaled<NarrowLanes>(b, b[k], LDLT + k * n, k + 1, n);
     b[k] /= LDLT[k + k * n];
   }
   for (int k = n - 1; k >= 0; --k) {
@@ -108,7 +91,7 @@ template <class Lanes>
     double* const column = A + j * n;
     for (int k = from; k < j; ++k) std::swap(column[k], column[pivots[k]]);
     for (int k = from; k < j; ++k) subtractScaled<Lanes>(column, column[k], A + k * n, k + 1, n);
-    pivots[j] = pivotRow<Lanes>(column, j, n);
+    pivots[j] = pivotRow(column, j, n);
     for (int i = 0; i <= j && pivots[j] != j; ++i) std::swap(A[j + i * n], A[pivots[j] + i * n]);
     const double pivot = column[j];
     if (!(std::abs(pivot) > 0) || !std::isfinite(pivot)) return false;
