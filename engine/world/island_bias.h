@@ -13,9 +13,8 @@
 // what is left is fitted again in the next one. So it is with a rod between two pads, too, which two contacts each
 // hold, and with two soft fingers, none of which turns: they may ask one thing for two twists about nearly one axis,
 // and their torsions would wind each other up to the limit of friction. Where the contacts don't contradict each other
-// b stays what it is. Pairs alone are made consistent by
-// stick_bias.h, at less cost. Source: conjugate gradients on the normal equations (M. Hestenes, E. Stiefel, J. Res.
-// Natl. Bur. Stand. 49 (1952) 409-436, section 10).
+// b stays what it is. Pairs alone are made consistent by stick_bias.h, at less cost. Source: conjugate gradients on the
+// normal equations (M. Hestenes, E. Stiefel, J. Res. Natl. Bur. Stand. 49 (1952) 409-436, section 10).
 #pragma once
 #include "pincer/engine/world/scratch.h"
 

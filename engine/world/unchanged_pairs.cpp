@@ -1,6 +1,7 @@
 #include "pincer/engine/world/unchanged_pairs.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <span>
 
