@@ -1,9 +1,13 @@
 // wide: loops over numbers side by side, four to an instruction where the processor has them (AVX2), else two
-// or, by clang, one: tests/golden compares the bits.
+// or, by clang, one: tests/golden compares the bits, and switches AVX2 off as the C library lets it.
 //
 // Each number goes through the same operations in the same order either way, and FMA stays out: the same bits.
 #pragma once
 #include "pincer/engine/solve/lanes.h"
+
+#if __has_include(<sys/platform/x86.h>)
+#include <sys/platform/x86.h>
+#endif
 
 namespace pincer::engine {
 
@@ -29,13 +33,18 @@ struct FourLanes {
 
 // act(lanes), a lambda that is always inlined, compiled once for either kind of processor.
 #if defined(__x86_64__) && !defined(__clang__)
+#if defined(CPU_FEATURE_ACTIVE)
+inline const bool kProcessorHasFour = CPU_FEATURE_ACTIVE(AVX2);
+#else
+inline const bool kProcessorHasFour = __builtin_cpu_supports("avx2");
+#endif
 template <class Act>
 [[gnu::target("avx2"), gnu::noinline]] auto withFourLanes(const Act& act) {
   return act(FourLanes());
 }
 template <class Act>
 auto wide(const Act& act) {
-  return __builtin_cpu_supports("avx2") ? withFourLanes(act) : act(NarrowLanes());
+  return kProcessorHasFour ? withFourLanes(act) : act(NarrowLanes());
 }
 #else
 template <class Act>
