@@ -2,13 +2,14 @@
 """Twelve detailed parts picked up by simulated hands: does a tick take 1 ms of its own, is one flagged?
 
     cmake --build build --target pincer thread_clock
-    tests/meshes/pickup_parts.py build/pincer build/thread_clock.so MESHES OUT [PART ...]
+    tests/meshes/pickup_parts.py build/pincer build/thread_clock.so MESHES OUT [PART ...] [--size MM] [--most N] [--seed N]
 
 MESHES  a directory of fandisk, rocker-arm, spot, stanford-bunny, suzanne and teapot (.obj). Six more are made here.
-Each is brought to 3,000 .. 12,000 triangles and 50 mm by pincer's own commands, then picked up in one session of four
-frictions, five times over. The sessions are the same to the bit; a tick's time is the least of the five, in processor time of its
+Each is brought to 3,000 .. 12,000 triangles (--most) and 50 mm (--size) by pincer's own commands, then picked up in one
+session of four frictions (--seed draws their order and the hand), five times over. The sessions are the same to the bit; a tick's time is the least of the five, in processor time of its
 thread.
 """
+import argparse
 import math
 import os
 import pathlib
@@ -17,9 +18,8 @@ import subprocess
 import sys
 
 REPLAYS = 5
-SIZE = 0.05        # [m]
 LONGEST = 1000     # of a tick [us]
-FEWEST, MOST = 3000, 12000  # triangles
+FEWEST = 3000      # triangles
 FILES = ["fandisk", "rocker-arm", "spot", "stanford-bunny", "suzanne", "teapot"]
 
 
@@ -192,9 +192,10 @@ def triangles_of(path):
     return sum(1 for line in open(path) if line.startswith("f "))
 
 
-def prepared(pincer, meshes, out, name):
+def prepared(asked, name):
     """The part's file, of few enough triangles and enough."""
-    part, raw, fine = (out / (name + end) for end in (".obj", "-raw.obj", "-fine.obj"))
+    pincer = asked.pincer
+    part, raw, fine = (asked.out / (name + end) for end in (".obj", "-raw.obj", "-fine.obj"))
     if name in MADE:
         make, levels = MADE[name]
         write_obj(raw, *make())
@@ -202,13 +203,14 @@ def prepared(pincer, meshes, out, name):
             must(pincer, "mesh", "subdivide", raw, fine, "--units", "mm", "--levels", levels)
             raw = fine
     else:
-        must(pincer, "mesh", "convert", "--repair", "--fill-holes", "200", meshes / (name + ".obj"), raw, "--size", SIZE)
+        must(pincer, "mesh", "convert", "--repair", "--fill-holes", "200", asked.meshes / (name + ".obj"), raw,
+             "--size", asked.size / 1000)
         if triangles_of(raw) < FEWEST:
             must(pincer, "mesh", "subdivide", raw, fine)
             raw = fine
     units = "mm" if name in MADE else "m"
-    if triangles_of(raw) > MOST:
-        said = must(pincer, "mesh", "simplify", raw, part, "--units", units, "--triangles", MOST)
+    if triangles_of(raw) > asked.most:
+        said = must(pincer, "mesh", "simplify", raw, part, "--units", units, "--triangles", asked.most)
         said = said.splitlines()[0].split("; ")[-1]
     else:
         part.write_bytes(raw.read_bytes())
@@ -221,14 +223,15 @@ def ticks_of(session):
     return {(trial, tick): (us, status) for trial, tick, us, status in rows}
 
 
-def measure(pincer, clock, meshes, out, name):
-    part, units, said = prepared(pincer, meshes, out, name)
+def measure(asked, name):
+    part, units, said = prepared(asked, name)
     least, flagged, over_once = {}, {}, 0
     for replay in range(REPLAYS):
-        directory = out / ("%s-%d" % (name, replay))
+        directory = asked.out / ("%s-%d" % (name, replay))
         run("rm", "-rf", directory)
-        code, text = run(pincer, "run", "sphere-pickup", "--object", part, "--size", SIZE, "--repetitions", 1,
-                         "--condition", "cld+force", "--sample-rate", 1000, "--no-report", "--out", directory, preload=clock)
+        code, text = run(asked.pincer, "run", "sphere-pickup", "--object", part, "--size", asked.size / 1000, "--repetitions", 1,
+                         "--seed", asked.seed, "--condition", "cld+force", "--sample-rate", 1000, "--no-report",
+                         "--out", directory, preload=asked.clock)
         if code != 0:
             return "%-15s refused: %s" % (name, text.strip().splitlines()[0]), False
         for key, (us, status) in ticks_of(directory / "session.db").items():
@@ -247,17 +250,31 @@ def measure(pincer, clock, meshes, out, name):
     return row, over == 0 and not flagged
 
 
+def asked_for():
+    known = FILES + list(MADE)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("pincer", "clock", "meshes", "out"):
+        parser.add_argument(name, type=lambda word: pathlib.Path(word).resolve())
+    parser.add_argument("parts", nargs="*", metavar="PART", help="of " + ", ".join(known) + " (default: all)")
+    parser.add_argument("--size", type=float, default=50, help="[mm] (default 50)")
+    parser.add_argument("--most", type=int, default=12000, help="triangles (default 12,000)")
+    parser.add_argument("--seed", type=int, default=1, help="of the session (default 1)")
+    asked = parser.parse_args()
+    for part in asked.parts:
+        if part not in known:
+            parser.error("%s is no part; these are: %s" % (part, ", ".join(known)))
+    asked.parts = asked.parts or known
+    asked.out.mkdir(parents=True, exist_ok=True)
+    return asked
+
+
 def main():
-    if len(sys.argv) < 5:
-        sys.exit(__doc__)
-    pincer, clock, meshes, out = (pathlib.Path(word).resolve() for word in sys.argv[1:5])
-    out.mkdir(parents=True, exist_ok=True)
-    wanted = sys.argv[5:] or FILES + list(MADE)
+    asked = asked_for()
     print("%-15s %6s %9s %8s %8s %8s %6s %6s %8s" % ("part", "tri.", "ticks", "median", "p99.9", "worst", "> 1 ms",
                                                      "once", "flagged"))
     kept = True
-    for name in wanted:
-        row, is_kept = measure(pincer, clock, meshes, out, name)
+    for name in asked.parts:
+        row, is_kept = measure(asked, name)
         kept = kept and is_kept
         print(row, flush=True)
     sys.exit(0 if kept else 1)

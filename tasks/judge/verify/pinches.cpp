@@ -226,6 +226,7 @@ std::vector<Record> row(MeasureContext&) {
 // times as heavy, pressed by 50 N with mu 1, one spins between its neighbours: the row arches.
 std::vector<Record> rows(MeasureContext& context) {
   constexpr int kManyBalls = 20;
+  const double settled = context.thorough ? 3 : 1;  // [s]
   double few = 0, many = 0, runs = 0;
   std::int64_t flagged = 0;
   for (const int balls :
@@ -238,7 +239,7 @@ std::vector<Record> rows(MeasureContext& context) {
             for (int k = 0; k < (context.thorough ? 3 : hard) && !context.interrupted(); ++k, ++runs) {
               furthest = std::max(furthest,
                                   pressRow({balls, k * (balls - 1) / 2, heavier, mu, degrees * std::numbers::pi / 180,
-                                            hard ? 50.0 : 5.0, context.thorough ? 60.0 : 2.0},
+                                            hard ? 50.0 : 5.0, context.thorough ? 60.0 : 2.0, settled},
                                            flagged));
             }
           }
