@@ -6,8 +6,20 @@ namespace pincer::contact {
 
 using State = HeldContact::State;
 
+// Around an edge the overlap d changes by d / h of the centre's way at most, on anything rounder and in any hollow that
+// the finger fits into by less, straight down by all of it.
+bool TouchingBall::continues(const SurfaceSlot& kept, const ShellContact& contact) const {
+  constexpr double kSlack = 2;     // for shading normals, which turn faster than the surface here and there
+  constexpr double kMostTurn = 5;  // of d / h, which has no bound where the centre comes to the surface
+  constexpr double kStill = 1e-5;  // of r
+  if (!eases) return true;
+  const double before = std::max(0.0, r - heightBefore(kept)), now = std::max(0.0, r - contact.h);
+  const double turn = now < kMostTurn * contact.h ? std::max(1.0, now / contact.h) : kMostTurn;
+  return (now * contact.n - before * kept.n_B).norm() <= kSlack * turn * moved + kStill * r;
+}
+
 void EasedContacts::moveOn(int slot, const ShellContact& contact) {
-  if (contact.converged && continues(kept(slot), contact) && !isListed(contact)) return keep(slot, contact);
+  if (contact.converged && ball_.continues(kept(slot), contact) && !isListed(contact)) return keep(slot, contact);
   lose(slot);
 }
 
@@ -24,23 +36,11 @@ void EasedContacts::lose(int slot) {
 }
 
 ShellContact EasedContacts::onItsSide(const SurfaceSlot& kept, const ShellContact& contact) const {
-  if (contact.foot.isOnFace() || !contact.converged || !(contact.h < 0 && heightBefore(kept) > 0)) return contact;
+  if (contact.foot.isOnFace() || !contact.converged || !(contact.h < 0 && ball_.heightBefore(kept) > 0)) return contact;
   ShellContact turned = contact;
   turned.n = -contact.n;
   turned.h = -contact.h;
-  return continues(kept, turned) ? turned : contact;
-}
-
-// Around an edge the overlap d changes by d / h of the centre's way at most, on anything rounder and in any hollow that
-// the finger fits into by less, straight down by all of it.
-bool EasedContacts::continues(const SurfaceSlot& kept, const ShellContact& contact) const {
-  constexpr double kSlack = 2;     // for shading normals, which turn faster than the surface here and there
-  constexpr double kMostTurn = 5;  // of d / h, which has no bound where the centre comes to the surface
-  constexpr double kStill = 1e-5;  // of r
-  if (!ball_.eases) return true;
-  const double before = std::max(0.0, ball_.r - heightBefore(kept)), now = std::max(0.0, ball_.r - contact.h);
-  const double turn = now < kMostTurn * contact.h ? std::max(1.0, now / contact.h) : kMostTurn;
-  return (now * contact.n - before * kept.n_B).norm() <= kSlack * turn * ball_.moved + kStill * ball_.r;
+  return ball_.continues(kept, turned) ? turned : contact;
 }
 
 int EasedContacts::alone() const {

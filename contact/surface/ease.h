@@ -38,6 +38,10 @@ struct TouchingBall {
   bool eases;    // false: contacts come and go as they are found
 
   Vec3 placeOf(const ShellContact& c) const { return C - c.h * c.n; }
+  // How high the centre was over the slot's contact at the last query [m].
+  double heightBefore(const SurfaceSlot& kept) const { return (C_last - kept.p_BS).dot(kept.n_B); }
+  // True if the contact is the slot's moved on.
+  bool continues(const SurfaceSlot& kept, const ShellContact& contact) const;
 };
 
 // A slot's contact in this query.
@@ -64,9 +68,6 @@ class EasedContacts {
   // `contact`, but from the other side where the centre passed from in front of the plane across an edge's normal to
   // behind it: beside a fin the finger was caught between the edge and itself, or lost it.
   ShellContact onItsSide(const SurfaceSlot& kept, const ShellContact& contact) const;
-  // True if the contact is the slot's moved on.
-  bool continues(const SurfaceSlot& kept, const ShellContact& contact) const;
-
   const SurfaceSlot& kept(int slot) const { return slots_[static_cast<std::size_t>(slot)]; }
   const HeldContact& at(int slot) const { return held_[static_cast<std::size_t>(slot)]; }
   // True if `is(held)` for any that is followed.
@@ -107,8 +108,6 @@ class EasedContacts {
 
  private:
   HeldContact& held(int slot) { return held_[static_cast<std::size_t>(slot)]; }
-  // How high the centre was over it at the last query [m].
-  double heightBefore(const SurfaceSlot& kept) const { return (ball_.C_last - kept.p_BS).dot(kept.n_B); }
   HeldContact newOne(const ShellContact& contact) const;
   bool mayYield(const HeldContact& f) const { return f.is_new || (f.isFollowed() && f.shown() > ball_.r); }
   HeldContact* room();

@@ -14,18 +14,19 @@ bool isUnset(const Vec3& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
 }  // namespace
 
-void Lookout::findOthers() {
-  if (!contacts_.follows() && contacts_.fades()) findLost();
-  if (!(contacts_.nearestHeight() < ball_.reach) && !contacts_.fades()) findNearest();
-  contacts_.dropFading();
-  if (contacts_.nearestHeight() < ball_.reach) lookOut();
+void Lookout::findOthers(EasedContacts& contacts) {
+  contacts_ = &contacts;
+  if (!contacts_->follows() && contacts_->fades()) findLost();
+  if (!(contacts_->nearestHeight() < ball_.reach) && !contacts_->fades()) findNearest();
+  contacts_->dropFading();
+  if (contacts_->nearestHeight() < ball_.reach) lookOut();
 }
 
 // Without any contact left: what else faces the finger; or a place on the side that it is on; or the plane that it was.
 void Lookout::findLost() {
   lookOut();
-  if (!contacts_.follows()) {
-    const ShellContact plane = contacts_.planeOf(contacts_.deepestFading());
+  if (!contacts_->follows()) {
+    const ShellContact plane = contacts_->planeOf(contacts_->deepestFading());
     const auto isSameSide = [&](const ShellContact& c) {
       return c.converged && c.n.dot(plane.n) > 0 && std::abs(c.h - plane.h) < kSameDepth * ball_.r;
     };
@@ -34,7 +35,7 @@ void Lookout::findLost() {
     if (seed.found) found = follow(surface_, ball_.C, ball_.r, seed.foot);
     if (seed.found && !isSameSide(found)) found = straightTo(surface_, ball_.C, seed);
     if (!isSameSide(found)) return holdLost();
-    contacts_.admit(found);
+    contacts_->admit(found);
   }
   tracker_.status |= kQueryReseeded;
   ++cost_.reseeds;
@@ -43,23 +44,23 @@ void Lookout::findLost() {
 // Its plane stays, whole. An open border stays as a wire: a finger that is led in under the sheet is pushed away from
 // it until it is clear.
 void Lookout::holdLost() {
-  const int slot = contacts_.deepestFading();
-  const auto wire = ball_.eases ? wireUnder(surface_, ball_.C, ball_.r, contacts_.kept(slot)) : std::nullopt;
+  const int slot = contacts_->deepestFading();
+  const auto wire = ball_.eases ? wireUnder(surface_, ball_.C, ball_.r, contacts_->kept(slot)) : std::nullopt;
   if (wire) {
-    contacts_.keep(slot, *wire);
+    contacts_->keep(slot, *wire);
     tracker_.status |= kQueryReseeded;
     ++cost_.reseeds;
   } else {
-    contacts_.hold(slot);
+    contacts_->hold(slot);
     tracker_.status |= kQueryHeldDirection;
     ++cost_.held;
   }
 }
 
 void Lookout::findNearest() {
-  const ShellContact nearest = nearestWithin(contacts_.nearestHeight());
-  if (contacts_.follows() && (!nearest.converged || contacts_.isListed(nearest))) return;
-  contacts_.admitNearest(nearest);
+  const ShellContact nearest = nearestWithin(contacts_->nearestHeight());
+  if (contacts_->follows() && (!nearest.converged || contacts_->isListed(nearest))) return;
+  contacts_->admitNearest(nearest);
   if (nearest.converged) return;
   tracker_.status |= kQueryHeldDirection;
   ++cost_.held;
@@ -87,7 +88,8 @@ ShellContact Lookout::nearestWithin(double bound) {
 
 void Lookout::remember(const ShellContact& main) {
   constexpr double kTold = 2;  // turns: what was left out has its next one meanwhile
-  if (!contacts_.hasRoom() && tracker_.left_out <= kTold * ball_.turn) tracker_.status |= kQueryContactsDropped;
+  if (contacts_ && !contacts_->hasRoom() && tracker_.left_out <= kTold * ball_.turn)
+    tracker_.status |= kQueryContactsDropped;
   if (main.h > 0) {
     tracker_.p_BC = ball_.C;
     tracker_.has_centre = true;
@@ -125,9 +127,9 @@ bool Lookout::isGoodAlone(int slot, const Vec3& n) const {
 
 void Lookout::lookOut() {
   const auto normalIn = [&](int slot) -> Vec3 {
-    return contacts_.at(slot).isFollowed() ? contacts_.at(slot).contact.n : Vec3(Vec3::Zero());
+    return contacts_->at(slot).isFollowed() ? contacts_->at(slot).contact.n : Vec3(Vec3::Zero());
   };
-  if (!isGood(contacts_.alone() >= 0, normalIn) && !lookAlone()) tracker_.look = lookFromHere();
+  if (!isGood(contacts_->alone() >= 0, normalIn) && !lookAlone()) tracker_.look = lookFromHere();
   if (tracker_.look.is_alone) return;
   NearParts& near = surface_.cache.partsOf(tracker_);
   if (!near.areOf(surface_.net.fingerprint(), tracker_.look)) {
@@ -141,9 +143,9 @@ void Lookout::lookOut() {
 
 // A look that finds that nothing but the followed contact can matter for a while.
 bool Lookout::lookAlone() {
-  const int slot = contacts_.alone();
+  const int slot = contacts_->alone();
   if (surface_.variant != SurfaceVariant::smooth || slot < 0) return false;
-  const ShellContact& c = contacts_.at(slot).contact;
+  const ShellContact& c = contacts_->at(slot).contact;
   const double reach = ball_.reach;
   const double way = search_.wayAlone(ball_.C, c.n, c.h, reach, kLeastAlone * reach, kMostAlone * reach);
   if (!(way > 0)) return false;
@@ -155,7 +157,7 @@ bool Lookout::lookAlone() {
 SurfaceLook Lookout::lookFromHere() const {
   SurfaceLook look{.p_BC = ball_.C, .reach = ball_.reach, .horizon = kLookHorizon * ball_.reach};
   for (int slot = 0; slot < kMaxSurfaceContacts; ++slot) {
-    const HeldContact& f = contacts_.at(slot);
+    const HeldContact& f = contacts_->at(slot);
     if (f.isFollowed() && turnsSlowly(f.contact)) look.n[static_cast<std::size_t>(slot)] = f.contact.n;
   }
   return look;

@@ -27,12 +27,11 @@ namespace pincer::contact {
 
 class Lookout {
  public:
-  Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, EasedContacts& contacts,
-          SurfaceTracker& tracker, QueryCost& cost)
+  Lookout(const FeltSurface& surface, const SurfaceSearch& search, const TouchingBall& ball, SurfaceTracker& tracker,
+          QueryCost& cost)
       : surface_(surface),
         search_(search),
         ball_(ball),
-        contacts_(contacts),
         tracker_(tracker),
         cost_(cost),
         share_(ball.gone < ball.turn ? static_cast<std::uint32_t>(0x1p32 * (ball.gone / ball.turn)) : ~0u) {}
@@ -42,7 +41,7 @@ class Lookout {
   bool isNothingDue();
   bool isGoodAlone(int slot, const Vec3& n) const;
   // Finds the main contact where none is followed within reach, then what else there is.
-  void findOthers();
+  void findOthers(EasedContacts& contacts);
   // Keeps for the next query where the centre is, or would be had it not been pressed under the surface.
   void remember(const ShellContact& main);
 
@@ -71,7 +70,7 @@ class Lookout {
   const FeltSurface& surface_;
   const SurfaceSearch& search_;
   const TouchingBall& ball_;
-  EasedContacts& contacts_;
+  EasedContacts* contacts_ = nullptr;  // since findOthers; till then there is room
   SurfaceTracker& tracker_;
   QueryCost& cost_;
   const std::uint32_t share_;  // of the circle of turns, that this query goes around

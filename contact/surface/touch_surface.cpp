@@ -31,8 +31,8 @@ int onlySlot(const SurfaceTracker& tracker) {
 
 // The usual tick: the only contact that is followed has moved on within its patch, nothing else has come near, and
 // nothing is eased.
-[[gnu::flatten]] bool followAlone(const FeltSurface& surface, const TouchingBall& ball, const EasedContacts& contacts,
-                                  Lookout& lookout, SurfaceTracker& tracker, SurfaceContacts& found) {
+[[gnu::flatten]] bool followAlone(const FeltSurface& surface, const TouchingBall& ball, Lookout& lookout,
+                                  SurfaceTracker& tracker, SurfaceContacts& found) {
   const int slot = onlySlot(tracker);
   if (slot < 0 || surface.variant != SurfaceVariant::smooth) return false;
   SurfaceSlot& kept = tracker.slots[static_cast<std::size_t>(slot)];
@@ -40,7 +40,7 @@ int onlySlot(const SurfaceTracker& tracker) {
     return false;
   const ShellContact contact =
       solveShellBeside(surface.net, surface.cache, ball.C, footOf(kept), {kept.du, kept.dv}, ball.C - ball.C_last);
-  if (!contact.converged || !(contact.h > 0 && contact.h < ball.reach) || !contacts.continues(kept, contact) ||
+  if (!contact.converged || !(contact.h > 0 && contact.h < ball.reach) || !ball.continues(kept, contact) ||
       !lookout.isGoodAlone(slot, contact.n))
     return false;
   const Vec3 S = ball.placeOf(contact);
@@ -77,12 +77,12 @@ SurfaceContacts touchSurface(const FeltSurface& surface, const SurfaceSearch& se
                              double margin, SurfaceTracker& tracker) {
   const TouchingBall ball = ballAt(p_BC, r, margin, surface.variant, tracker);
   SurfaceContacts found;
-  EasedContacts contacts(ball, tracker.slots);
-  Lookout lookout(surface, search, ball, contacts, tracker, found.cost);
+  Lookout lookout(surface, search, ball, tracker, found.cost);
   tracker.status = kQueryOk;
-  if (!followAlone(surface, ball, contacts, lookout, tracker, found)) {
+  if (!followAlone(surface, ball, lookout, tracker, found)) {
+    EasedContacts contacts(ball, tracker.slots);
     followSlots(surface, ball, contacts, found.cost);
-    lookout.findOthers();
+    lookout.findOthers(contacts);
     lookout.remember(contacts.answer(found, tracker.status));
   }
   if (surface.variant == SurfaceVariant::force) shadeForce(surface.net, tracker, found);

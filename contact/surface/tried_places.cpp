@@ -43,8 +43,8 @@ bool Lookout::isNothingDue() {
 // Tries those that have their turn; all without anything to go by. What a query has too much work for waits for its
 // next.
 void Lookout::examineNear(NearParts& near) {
-  const bool is_free = !(contacts_.nearestHeight() < ball_.r) && !contacts_.hasRoom();  // the nearest is the answer
-  const bool is_all = !contacts_.hadContacts() || !contacts_.follows() || is_free;
+  const bool is_free = !(contacts_->nearestHeight() < ball_.r) && !contacts_->hasRoom();  // the nearest is the answer
+  const bool is_all = !contacts_->hadContacts() || !contacts_->follows() || is_free;
   for (NearPart& part : near.parts) {
     if (!(part.due <= near.gone && (is_all || hasTurn(part)))) continue;
     if (work_ >= kMostWork) return;
@@ -58,7 +58,7 @@ double Lookout::examine(std::int32_t place) {
   const double rounding = kRoundOff * surface_.net.length();
   const double way = part.approach(ball_.C, ball_.reach) - rounding;
   if (way > 0) return way;
-  const double reach = std::min(ball_.reach, contacts_.heightToBeat());
+  const double reach = std::min(ball_.reach, contacts_->heightToBeat());
   if (reach < ball_.reach && !part.mayHold(ball_.C, reach, Facing::front)) return 0;
   const auto [triangle, other] = search_.trianglesAt(place);
   if (isBeside(part, triangle) && (other == triangle || isBeside(part, other))) return 0;
@@ -71,7 +71,7 @@ double Lookout::examine(std::int32_t place) {
 
 // True if the patch is beside a followed contact's, and bends so little that it holds no other.
 bool Lookout::isBeside(const PatchBounds& part, std::int32_t triangle) const {
-  return part.hollow * ball_.reach < LoneContact::kFits && contacts_.isAny([&](const HeldContact& f) {
+  return part.hollow * ball_.reach < LoneContact::kFits && contacts_->isAny([&](const HeldContact& f) {
     return shareVertex(surface_.net.mesh(), triangle, f.contact.foot.triangle) &&
            closestNormal(surface_.net, triangle, f.contact.n) > kBeside;
   });
@@ -82,20 +82,20 @@ bool Lookout::isKnown(std::int32_t triangle, const FlatPoint& flat) const {
   Vec3 R = ball_.C;
   for (int i = 0; i < 3; ++i) R -= flat.b[static_cast<std::size_t>(i)] * surface_.net.vertex(triangle, i);
   const double least = kApart * std::sqrt(flat.distance2);
-  return contacts_.isAny([&](const HeldContact& f) { return f.contact.n.dot(R) > least; });
+  return contacts_->isAny([&](const HeldContact& f) { return f.contact.n.dot(R) > least; });
 }
 
 void Lookout::tryPlace(const Foot& foot) {
   const ShellContact found = follow(surface_, ball_.C, ball_.r, foot);
   work_ += 1 + found.cost.steps + found.cost.crossings;
   if (!found.converged || !(found.h > 0 && found.h < ball_.reach) || !isNew(found)) return;
-  if (!contacts_.admit(found)) tracker_.left_out = 0;
+  if (!contacts_->admit(found)) tracker_.left_out = 0;
 }
 
 // True if it is a stable place, that the finger could come to from outside, and no followed contact's.
 bool Lookout::isNew(const ShellContact& candidate) const {
   constexpr double kShort = 0.95;  // of the way: a patch may bulge out of its triangle
-  if (contacts_.isAny([&](const HeldContact& f) { return f.contact.n.dot(candidate.n) > kApart; })) return false;
+  if (contacts_->isAny([&](const HeldContact& f) { return f.contact.n.dot(candidate.n) > kApart; })) return false;
   const Foot& foot = candidate.foot;
   const Vec3& C = ball_.C;
   if (foot.isOnFace() &&
