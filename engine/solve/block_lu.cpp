@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pincer/contact/functions/invariants.h"
+#include "pincer/engine/solve/wide.h"
 
 namespace pincer::engine {
 namespace {
@@ -14,15 +15,13 @@ namespace {
 constexpr int kB = BlockLu::kBlock;
 constexpr int kBB = kB * kB;
 
-using DoublePair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
-
-// C -= A B, row-major, a row at a time in registers.
-void subtractProduct(const double* A, const double* B, double* C) {
+// C -= A B, row-major, a row at a time in registers: in three pairs, or in one of four and one of two.
+void subtractProduct(NarrowLanes, const double* A, const double* B, double* C) {
   for (int i = 0; i < kB; ++i, A += kB, C += kB) {
-    DoublePair* const c = reinterpret_cast<DoublePair*>(C);
+    DoublePair* const c = &pairAt(C);
     DoublePair c0 = c[0], c1 = c[1], c2 = c[2];
     for (int k = 0; k < kB; ++k) {
-      const DoublePair* const b = reinterpret_cast<const DoublePair*>(B + kB * k);
+      const DoublePair* const b = &pairAt(B + kB * k);
       const DoublePair a = {A[k], A[k]};
       c0 -= a * b[0];
       c1 -= a * b[1];
@@ -33,11 +32,35 @@ void subtractProduct(const double* A, const double* B, double* C) {
     c[2] = c2;
   }
 }
+#if defined(__x86_64__) && !defined(__clang__)
+// All of B stays in registers: less than half the time of pairs.
+[[gnu::target("avx2")]] void subtractProduct(FourLanes, const double* A, const double* B, double* C) {
+  FourLanes::Numbers b[kB];
+  DoublePair b_end[kB];
+#pragma GCC unroll 6
+  for (int k = 0; k < kB; ++k) {
+    b[k] = FourLanes::at(B + kB * k);
+    b_end[k] = pairAt(B + kB * k + FourLanes::count);
+  }
+  for (int i = 0; i < kB; ++i, A += kB, C += kB) {
+    FourLanes::Numbers c = FourLanes::at(C);
+    DoublePair c_end = pairAt(C + FourLanes::count);
+#pragma GCC unroll 6
+    for (int k = 0; k < kB; ++k) {
+      c -= A[k] * b[k];
+      c_end -= A[k] * b_end[k];
+    }
+    FourLanes::at(C) = c;
+    pairAt(C + FourLanes::count) = c_end;
+  }
+}
+#endif
 
 // C = A B; C may be A.
-void multiply(const double* A, const double* B, double* C) {
+template <class Lanes>
+void multiply(Lanes lanes, const double* A, const double* B, double* C) {
   double product[kBB] = {};
-  subtractProduct(A, B, product);
+  subtractProduct(lanes, A, B, product);
   for (int k = 0; k < kBB; ++k) C[k] = -product[k];
 }
 
@@ -219,18 +242,20 @@ void BlockLu::clear() {
 }
 
 bool BlockLu::factorise() {
-  const int* target = targets_.data();
-  for (int k = 0; k < nodes_; ++k) {
-    double* const pivot = block(place(order_[k], order_[k]));
-    if (!invert(pivot)) return false;
-    for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) {
-      double* const L = block(lower_[i]);
-      multiply(L, pivot, L);
-      for (int j = first_later_[k]; j < first_later_[k + 1]; ++j)
-        subtractProduct(L, block(upper_[j]), block(*target++));
+  return wide([this](auto lanes) __attribute__((always_inline)) {
+    const int* target = targets_.data();
+    for (int k = 0; k < nodes_; ++k) {
+      double* const pivot = block(place(order_[k], order_[k]));
+      if (!invert(pivot)) return false;
+      for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) {
+        double* const L = block(lower_[i]);
+        multiply(lanes, L, pivot, L);
+        for (int j = first_later_[k]; j < first_later_[k + 1]; ++j)
+          subtractProduct(lanes, L, block(upper_[j]), block(*target++));
+      }
     }
-  }
-  return true;
+    return true;
+  });
 }
 
 void BlockLu::solve(double* b) const {
