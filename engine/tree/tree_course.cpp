@@ -273,7 +273,7 @@ void moveFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const 
     course.u[c] = course.u_free[c] - u[c];
   }
   growCoordinates(tree, q, course.step, course.q);
-  TreeBase standing = base.end;
+  TreeBase standing = base.mid;
   standing.motion = {};
   placeLinks(tree, standing, course.q, course.stage);
   moveLinks(tree, standing, course.q, course.u, course.stage);

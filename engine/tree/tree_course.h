@@ -95,10 +95,12 @@ void goByRungeKutta(const TreeModel& tree, const BaseCourse& base, const TreePus
 
 // Motions at the end of the free course as contacts in the middle see them, in `course.end`:
 //
-//   J(q (+) h u) u + J(q_m) (u_free - u),   the base at the tick's end
+//   J(q (+) h u) u + J(q_m) (u_free - u),   the base at the tick's end, and in its middle for what u_free adds
 //
 // The turn is that of the rates at the start: by those of the free course a drive that presses a link against
-// something would turn it through that, and what rests would seem to move.
+// something would turn it through that, and what rests would seem to move. What u_free adds is along the axes by which
+// contacts hold it back: along those of a base that has turned on, something of it would be left across them, and what
+// two jaws hold would be wrung by each against the other.
 void moveFreeEnd(const TreeModel& tree, const BaseCourse& base, std::span<const double> q, std::span<const double> u,
                  double h, TreeCourse& course);
 

@@ -219,7 +219,8 @@ class BiasFit {
 double chordError(double h, const Motion& m, const Vec3& arm_W) {
   constexpr double kChord = 1.0 / 24;  // sin(x / 2) = x / 2 (1 - x^2 / 24 + ..)
   const double turn2 = h * h * m.w_W.squaredNorm();
-  return turn2 <= kFastTurn * kFastTurn ? kChord * turn2 * (m.v_W + m.w_W.cross(arm_W)).norm() : 0;
+  if (!(turn2 <= kFastTurn * kFastTurn)) return 0;
+  return kChord * turn2 * std::sqrt(std::max(m.v_W.squaredNorm(), (m.v_W + m.w_W.cross(arm_W)).squaredNorm()));
 }
 
 double largestChordError(double h, std::span<const int> order, const std::vector<Contact>& contacts) {
@@ -265,16 +266,14 @@ void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const Cont
   fit.apply(h, offset_rate, q);
 }
 
-bool fitToTurn(double h, double offset_rate, const ContactProblem& problem, const double* r, const double* u, double* q,
+void fitToTurn(double h, double offset_rate, const ContactProblem& problem, const double* r, const double* u, double* q,
                std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
   const double most = largestChordError(h, order, contacts);
-  if (memory.operations_left < 0 || most <= kNegligible) return false;
+  if (memory.operations_left < 0 || most <= kNegligible) return;
   BiasFit fit(PushingBy::kLastTick, problem, r, u, order, contacts, memory);
   fit.gather();
   fit.minimise();
-  if (!(fit.largestLeft() <= most)) return false;
-  fit.apply(h, offset_rate, q);
-  return true;
+  if (fit.largestLeft() <= most) fit.apply(h, offset_rate, q);
 }
 
 void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q,

@@ -43,13 +43,14 @@ bool askForNothing(const ContactProblem& problem, const double* r, std::span<con
 void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
                      double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory);
 
-// The same of velocities `u` [m/s] at the impulses `r`, of contacts that a tree carries along: joints keep faces
-// parallel that hold one thing, which asks more of it than it has freedoms, and a tick's chords don't agree on where
-// its arc ends. What no motion gives goes out of q, up to
-//   h^2 |w|^2 |v| / 24     w, v  of a body that touches, where it does (chord and arc), up to 0.1 rad per tick
+// After it, the same of velocities `u` [m/s] at the impulses `r`, of contacts that a tree carries along: joints keep
+// faces parallel that hold one thing, which asks more of it than it has freedoms, and a tick's chords don't agree on
+// where its arc ends. What no motion gives goes out of q, up to
+//   h^2 |w|^2 |v| / 24     w, v  of a body that touches, where it does or at its centre (chord and arc), up to 0.1 rad
+//                          per tick: what hangs far beside its jaws goes by the chord of its centre
 // or it would be added to friction within the thing, tick by tick, until a face lets go (a box in two coupled jaws,
-// swung by 2 rad: 2 mm). False, and nothing has changed, if that is exceeded, or nothing turns.
-bool fitToTurn(double h, double offset_rate, const ContactProblem& problem, const double* r, const double* u, double* q,
+// swung by 2 rad: 2 mm). Nothing changes if that is exceeded, or nothing turns.
+void fitToTurn(double h, double offset_rate, const ContactProblem& problem, const double* r, const double* u, double* q,
                std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory);
 
 // Where the solver found an answer only for q + `give`: what the contacts ask for, and q, become what they get.

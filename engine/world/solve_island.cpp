@@ -96,7 +96,8 @@ class IslandSolve {
   // The gaps of a loop of bodies are fitted to the contacts that pushed in the last tick, once more to the impulses
   // found if that fails; then contacts give way.
   void solveLoop() {
-    if (!fitToTurnOfTrees()) fit(PushingBy::kLastTick);
+    fit(PushingBy::kLastTick);
+    if (island_.holds_trees) fitToTurnOfTrees();
     if (island_.contacts > kFewContacts) return solve(giving(kLargestGive));
     solve(trying(SolverEffort::kInside));
     if (island_.result.converged) return;
@@ -237,13 +238,12 @@ class IslandSolve {
                     memory_);
   }
 
-  bool fitToTurnOfTrees() {
-    if (!island_.holds_trees) return false;
+  void fitToTurnOfTrees() {
+    fillSides();
     projectOntoCones(problem_, island_.r);
     weighContacts(problem_, memory_);
     errorOf(problem_, island_.r, memory_, island_.u);
-    return fitToTurn(scratch_.h, offsetRate(), problem_, island_.r, island_.u, island_.q, order_, scratch_.contacts,
-                     memory_);
+    fitToTurn(scratch_.h, offsetRate(), problem_, island_.r, island_.u, island_.q, order_, scratch_.contacts, memory_);
   }
 
   void fillSides() {
