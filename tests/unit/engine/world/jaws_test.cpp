@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <string>
 
 #include "pincer/engine/step.h"
 #include "pincer/engine/world/scratch.h"
@@ -243,6 +244,71 @@ TEST(Jaws, TheSameBitsOnTwoThreadsAndAgain) {
   };
   EXPECT_EQ(hashAfter(1), hashAfter(1));
   EXPECT_EQ(hashAfter(1), hashAfter(2));
+}
+
+// A palm that turns about z, with a jaw on either side, geared to each other and pressed on what hangs far beside them.
+struct TurningPalm {
+  static constexpr double kBeside = 0.06, kForce = 30, kTurn = 6;  // [m], [N] each, [rad/s^2]
+  static constexpr double kJaw = 0.005;                            // half a jaw's thickness [m]
+  WorldModel model = build();
+  WorldState state = makeState(model,
+                               {startAt(Vec3(0, kBeside, 0)), startAt(Vec3::Zero()),
+                                startAt(Vec3(-kHalf - kJaw, 0, 0)), startAt(Vec3(kHalf + kJaw, 0, 0))},
+                               {});
+  WorldScratch scratch{model};
+  double time = 0;
+  std::uint32_t status = 0;
+
+  static WorldModel build() {
+    WorldBuilder builder{WorldOptions{}};
+    const Material material{0.8, 0.8, 0, 0};
+    builder.addBody({"rod", contact::Box{Vec3(kHalf, kBeside + 0.01, 0.01)}, true, 0.3, material});
+    builder.addBody({"palm", contact::Sphere{0.001}, false, 0, material, true});
+    builder.excludePair(0, 1);
+    DriveModel drive;
+    drive.name = "grip";
+    drive.terms = {{addJaw(-1, material, builder), 1}};
+    drive.control = DriveModel::Control::kForce;
+    builder.addCoupling({addJaw(1, material, builder), drive.terms[0].joint});
+    builder.addDrive(drive);
+    return builder.build();
+  }
+  static int addJaw(double side, const Material& material, WorldBuilder& builder) {
+    const std::string name = side < 0 ? "left" : "right";
+    const int jaw = builder.addBody({name, contact::Box{Vec3(kJaw, 0.01, 0.02)}, true, 0.05, material});
+    builder.excludePair(1, jaw);
+    const Quat inwards(Eigen::AngleAxisd(-side * tests::kPi / 2, Vec3::UnitY()));
+    JointModel slider{
+        JointKind::kSlider, jaw, 1, {inwards, Vec3::Zero()}, {inwards, Vec3(side * (kHalf + kJaw), 0, 0)}, 0};
+    slider.name = "slide_" + name;
+    return builder.addJoint(slider);
+  }
+  // At rest for half a second, then it turns ever faster.
+  void tick() {
+    time += model.options.h;
+    const double since = std::max(time - 0.5, 0.0);
+    const Quat q(Eigen::AngleAxisd(0.5 * kTurn * since * since, Vec3::UnitZ()));
+    const MotionInput palm[] = {{{q, Vec3::Zero()}, {Vec3::Zero(), Vec3(0, 0, kTurn * since)}}};
+    const DriveInput grip[] = {{2 * kForce, 0, false}};
+    status |= step(model, state, scratch, StepInputs{{}, palm, {}, grip}).status;
+  }
+  Pose inPalm() const { return bodyPose(model, state, 1).inverse() * bodyPose(model, state, 0); }
+};
+
+// What the jaws' free motion showed along the palm's axes at the end of a tick friction had to undo, each tick, against
+// both jaws: all of it slid from the second tick on.
+TEST(Jaws, OnAPalmThatTurnsHoldWhatHangsFarBesideThem) {
+  TurningPalm grip;
+  while (grip.time < 0.4) grip.tick();
+  const Pose held = grip.inPalm();
+  double slip = 0;
+  while (grip.time < 0.55) {
+    grip.tick();
+    slip = std::max(slip, (grip.inPalm().p - held.p).norm());
+  }
+  constexpr double kFast = TurningPalm::kTurn * 0.05, kTick = 1e-3;
+  EXPECT_LT(slip, kTick * kTick * kFast * kFast * TurningPalm::kBeside);  // it goes by chords
+  EXPECT_EQ(grip.status, kStepOk);
 }
 
 }  // namespace
