@@ -295,8 +295,8 @@ struct TurningPalm {
   Pose inPalm() const { return bodyPose(model, state, 1).inverse() * bodyPose(model, state, 0); }
 };
 
-// What the jaws' free motion showed along the palm's axes at the end of a tick friction had to undo, each tick, against
-// both jaws: all of it slid from the second tick on.
+// The jaws' free motion was along the palm's axes at the end of a tick, contacts in its middle: friction was wrung by the
+// difference until all of it slid, from the second tick on.
 TEST(Jaws, OnAPalmThatTurnsHoldWhatHangsFarBesideThem) {
   TurningPalm grip;
   while (grip.time < 0.4) grip.tick();
