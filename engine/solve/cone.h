@@ -59,6 +59,23 @@ inline bool isInCone(const double* r, int rows, double mu, double slack = 0) {
   setVector(p, rows, mu * normal / yT, y, normal);
 }
 
+// x becomes Alart and Curnier's coupled projections of it: x_n = max(0, x_n), then x_T put into the disc of radius
+// mu x_n. Returns how much friction was missing of |x_T|, if it pushes.
+template <class Rows>
+[[gnu::always_inline]] inline double limitFriction(double* x, Rows rows, double mu) {
+  const double n = x[kNormalRow], most = mu * n;
+  if (!(n > 0)) {
+    for (int k = 0; k < rows; ++k) x[k] = 0;
+    return 0;
+  }
+  const double t2 = tangentNorm2(x, rows);
+  if (!(t2 > most * most)) return 0;
+  const double t = std::sqrt(t2), share = most / t;
+  for (int k = 0; k < rows; ++k) x[k] *= share;
+  x[kNormalRow] = n;
+  return t - most;
+}
+
 // The three ways in which Alart and Curnier's coupled projections act on y: off (y_n <= 0), inside
 // the disc of radius mu y_n, or onto its rim.
 enum class ContactMode : unsigned char { kOpen, kStick, kSlide };

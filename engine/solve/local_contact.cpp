@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "pincer/engine/solve/cone.h"
 
@@ -175,7 +176,7 @@ int solveOneContact(const double* W, int stride, const double* q, int rows, doub
   }
   if (rows == kTorsionRow && isIsotropic(W, stride)) {
     for (int k = 0; k < kTorsionRow; ++k) r[k] = -q[k] / W[k * (stride + 1)];
-    limitFriction(mu, r);
+    limitFriction(r, std::integral_constant<int, kTorsionRow>(), mu);
     return 0;
   }
   if (rows == kTorsionRow) return solvePressed<2>(W, stride, q, mu, r, alpha);

@@ -10,10 +10,8 @@
 // Sci. Stat. Comput. 4 (1983) 553-572), by Newton's method inside a bracket.
 //
 // Where W is isotropic, as where spheres touch, A is a multiple of the identity: what
-// slides has the direction of what would stick.
+// slides has the direction of what would stick (limitFriction, cone.h).
 #pragma once
-#include <cmath>
-
 #include "pincer/engine/solve/contact_problem.h"
 
 namespace pincer::engine {
@@ -22,21 +20,6 @@ constexpr double kBlockRoundOff = 1e-12;  // of A and W: their round-off, far be
 
 // True if, of three rows, all directions along the surface are alike and the normal is apart from them.
 bool isIsotropic(const double* W, int stride);
-
-// r = -W^-1 q of such a contact, which would stop it, becomes its solution. Returns how much
-// friction was missing of |r_T|, if it pushes.
-[[gnu::always_inline]] inline double limitFriction(double mu, double* r) {
-  const double most = mu * r[kNormalRow], r_T2 = r[0] * r[0] + r[1] * r[1];
-  if (!(r[kNormalRow] > 0)) {
-    r[0] = r[1] = r[kNormalRow] = 0;
-    return 0;
-  }
-  if (!(r_T2 > most * most)) return 0;
-  const double r_T = std::sqrt(r_T2), share = most / r_T;
-  r[0] *= share;
-  r[1] *= share;
-  return r_T - most;
-}
 
 // r = the solution for the `rows` x `rows` block W (column-major with column stride `stride`) and q; rows is 3, 4 or 6.
 // Where W makes several solutions possible (large mu W_nT), one of them. r is in the cone to round-off.

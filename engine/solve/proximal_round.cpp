@@ -15,21 +15,6 @@ constexpr double kNearlyFlat =
     0.1;  // of the slope at the start: of the energy, where a step ends; of a bracket, how near its ends a trial comes
 constexpr int kMostDoublings = 2, kMostTrials = 8;  // of a step's length
 
-// r = C(x), x overwritten.
-template <class Rows>
-[[gnu::always_inline]] inline void applyLaw(double* x, Rows rows, double mu) {
-  const double most = mu * x[kNormalRow], n = x[kNormalRow];
-  if (!(n > 0)) {
-    for (int k = 0; k < rows; ++k) x[k] = 0;
-    return;
-  }
-  const double t2 = tangentNorm2(x, rows);
-  if (t2 <= most * most) return;
-  const double s = most / std::sqrt(t2);
-  for (int k = 0; k < rows; ++k) x[k] *= s;
-  x[kNormalRow] = n;
-}
-
 }  // namespace
 
 void ProximalRound::freeze() {
@@ -55,7 +40,7 @@ double ProximalRound::gradient() {
         r_i[kNormalRow] -= frozenShift(i) * inverse_e;
         projectOntoCone(r_i, rows, problem_.friction(i), r_i);
       } else {
-        applyLaw(r_i, rows, problem_.friction(i));
+        limitFriction(r_i, rows, problem_.friction(i));
       }
       if (r_i[kNormalRow] > 0) addImpulse(problem_.sidesOf(i), rows, r_i, g);
     });

@@ -112,7 +112,7 @@ void Sweeps::relax(int i) {
   const double mu = problem_.friction(i);
   for (int k = 0; k < kNormalRow; ++k) r[k] = r_i[k] - round.inverse_W_tt * u[k];
   r[kNormalRow] = r_i[kNormalRow] - round.inverse_W_nn * u[kNormalRow];
-  return mu * limitFriction(mu, r) / round.inverse_W_tt;
+  return mu * limitFriction(r, std::integral_constant<int, kTorsionRow>(), mu) / round.inverse_W_tt;
 }
 template <class Rows>
 [[gnu::always_inline]] inline double Sweeps::solveOwn(int i, std::span<const ContactSide>, Rows rows, double* u,
@@ -123,7 +123,7 @@ template <class Rows>
   const double mu = problem_.friction(i);
   if (terms[0] > 0) {
     for (int k = 0; k < kTorsionRow; ++k) r[k] = r_i[k] - terms[k == kNormalRow] * u[k];
-    return mu * limitFriction(mu, r) / terms[0];
+    return mu * limitFriction(r, std::integral_constant<int, kTorsionRow>(), mu) / terms[0];
   }
   for (int k = 0; k < rows; ++k) {
     r[k] = r_i[k];

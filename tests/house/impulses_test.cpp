@@ -29,7 +29,6 @@ const std::map<std::string, std::string> kWritesImpulses = {
     {"Sweeps", "the sweeps themselves"},
     {"solveOwn", "one contact of a sweep"},
     {"solveOneContact", "one contact, exactly"},
-    {"limitFriction", "the law of one contact"},
     {"projectOntoCones", "the law of all of them"},
     {"softenImpulses", "contacts that squeeze without end, as if they were soft"},
     {"fillBrake", "a brake's normal impulse, which is given"},
