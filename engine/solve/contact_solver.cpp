@@ -16,7 +16,6 @@ namespace pincer::engine {
 namespace {
 
 constexpr std::int64_t kPerSmallStep = 1000;  // multiplications; of three contacts at most
-constexpr int kFewestStops = 4;               // sweeps, whatever is left of the budget
 
 // Scales r so that the energy that it brings in,  E(r) = r . (q + W r / 2),  isn't positive:
 // to the minimum of E on its ray.
@@ -69,16 +68,20 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   const bool is_few = problem.contactCount() <= kFewContacts;
   if (is_few) solveFew(problem, options, scratch, r, u, result);
   const bool may_search = problem.contactCount() >= kManyContacts || !problem.first_side.empty();
-  const bool is_short = is_few && !result.converged && !result.yields && options.effort == SolverEffort::kAll;
-  if (!is_few || (is_short && may_search && scratch.operations_left >= 0))
+  const bool is_short =
+      !result.converged && !result.yields && options.effort == SolverEffort::kAll && scratch.operations_left >= 0;
+  const bool squeezes = is_few && result.yields && isSqueezed(problem, scratch.weight, r);
+  if (!is_few || squeezes || (is_short && may_search)) {
+    const SolveResult few = result;
     result = searchImpulses(problem, options, scratch, r, u);
+    result.iterations += few.iterations;
+    if (is_few) result.start = few.start;
+  }
   settleEnergy(problem, scratch, r, u, result);
 }
 
-bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r,
+bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, const double* r,
                  double* u, SolveResult& result) {
-  if (!problem.calm) return false;
-  projectOntoCones(problem, r);
   weighContacts(problem, scratch);
   const ContactError error = errorOf(problem, r, scratch, u);
   if (!(error.speed <= restErrorOf(options))) return false;
@@ -94,13 +97,7 @@ double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eig
 
 void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u) {
   weighContacts(problem, scratch);
-  r.setZero();
-  std::fill(scratch.y.begin(), scratch.y.begin() + kMoverFreedoms * problem.movers, 0.0);
-  Sweeps method(problem, scratch, r.data());
-  for (int n = 0; n < sweeps && (n < kFewestStops || scratch.operations_left >= 0); ++n) {
-    method.sweep(n % 2 == 1);
-    spend(kPerContactSwept * problem.contactCount() + kPerSlideStep * method.slideSteps(), scratch);
-  }
+  Sweeps(problem, scratch, r.data()).stop(sweeps);
   if (isSqueezed(problem, scratch.weight, r.data())) r.setZero();
   errorOf(problem, r.data(), scratch, u.data());
   if (removeAddedEnergy(problem, r.data(), u.data())) errorOf(problem, r.data(), scratch, u.data());

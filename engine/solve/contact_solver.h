@@ -55,9 +55,9 @@ inline SolveResult solveContacts(const ContactProblem& problem, const SolverOpti
   return result;
 }
 
-// True if a calm problem's warm start, put into the cones, is as good as rest asks for: then r stays, and u and
-// `result` are its. Where it is, what contacts ask for needn't be made consistent, and stays what it was, to the bit.
-bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r,
+// True if a calm problem's warm start `r`, in the cones, is as good as rest asks for: then u and `result` are its.
+// Where it is, what contacts ask for needn't be made consistent, and stays what it was, to the bit.
+bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, const double* r,
                  double* u, SolveResult& result);
 
 // The relative natural-map residual of `r` (residual.h); `u` receives W r + q.

@@ -8,7 +8,6 @@
 #include "pincer/engine/solve/newton.h"
 #include "pincer/engine/solve/point_problem.h"
 #include "pincer/engine/solve/residual.h"
-#include "pincer/engine/solve/search.h"
 #include "pincer/engine/solve/squeeze.h"
 #include "pincer/engine/solve/sweeps.h"
 
@@ -85,7 +84,6 @@ class FewSearch {
 
   // An answer within the tolerance already, brought to round-off.
   SolveMethod polish(const SolverOptions& options) {
-    constexpr int kPolishSteps = 2;  // of Newton's method, which converges quadratically here
     keepBest();
     iterations_ +=
         iterateNewton(problem_, kStrictness * options.tolerance, kPolishSteps, equations_, scratch_, current_, trial_);
@@ -242,29 +240,24 @@ class FewSearch {
 };
 
 // Contacts that squeeze without end: as if contacts were soft. Those impulses never stay:
-// they are as large as round-off lets them be.
+// they are as large as round-off lets them be. Where soft contacts aren't solved either, the search goes on.
 void yieldToWalls(const ContactProblem& problem, const SolverOptions& options, EquationForm form,
                   SolverScratch& scratch, double* r, double* u, SolveResult& result) {
   const double start = errorOf(problem, r, scratch, u).residual;
   FewSearch search(problem, form, scratch, r, u, start);
-  const int iterations = result.iterations;
-  if (search.soften(options)) {
-    search.write(r, u);
-    const ContactError error = errorOf(problem, r, scratch, u);
-    result = {SolveMethod::kNotConverged,
-              search.iterations(),
-              error.residual,
-              error.speed,
-              result.start,
-              false,
-              result.give,
-              true};
-  } else {
-    const double first = result.start;
-    result = softenImpulses(problem, options, scratch, r, u);
-    result.start = first;
-  }
-  result.iterations += iterations;
+  result.yields = true;
+  result.converged = false;
+  if (!search.soften(options)) return;
+  search.write(r, u);
+  const ContactError error = errorOf(problem, r, scratch, u);
+  result = {SolveMethod::kNotConverged,
+            result.iterations + search.iterations(),
+            error.residual,
+            error.speed,
+            result.start,
+            false,
+            result.give,
+            true};
 }
 
 // A point between walls that nothing else solved: `r`, `u` and `result` are as they were unless this does.

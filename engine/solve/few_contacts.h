@@ -25,8 +25,8 @@ constexpr int kManyContacts = 12;
 constexpr int kFewContacts = 60;    // beyond, what needs many factorisations costs milliseconds
 constexpr int kDenseContacts = 40;  // beyond, a dense matrix costs more than any graph of movers that fits
 
-// Solves `problem`, of at most kFewContacts, from `r` (in the cones) whose velocities `u`
-// and residual `start` are; as solveContacts.
+// Solves `problem`, of at most kFewContacts, from `r` (in the cones) whose velocities `u` and residual `start` are; as
+// solveContacts, but that impulses may squeeze (squeeze.h) where soft contacts weren't solved; result.yields.
 void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch,
                       double* r, double* u, SolveResult& result);
 

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "pincer/engine/solve/cone.h"
+#include "pincer/engine/solve/proximal_round.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr double kContactsEpsilon = 1e-11;  // far above round-off, far below the W^ of one contact (1)
 constexpr double kMoversEpsilon = 1e-6;  // redundant contacts share their load by the round-off of their gaps over this
 constexpr double kCorrected = 1e-8;      // of Newton's equations: what epsilon may leave of them
 constexpr int kMostCorrections = 3;      // by the same factors
@@ -18,7 +18,6 @@ constexpr int kMostCorrections = 3;      // by the same factors
 constexpr double kProximalEpsilon = 1e-4, kLessEpsilon = 0.2, kLeastEpsilon = 1e-6;
 constexpr int kEasySteps = 4;
 constexpr double kRoundDecrease = 1e-6;  // of |Phi|^2 in a round
-constexpr int kStepsPerRound = 8;
 // of contacts that give way: as long as a round isn't solved, more
 constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;
 constexpr int kStepsPerGivingRound = 12;
@@ -27,8 +26,6 @@ constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
 constexpr double kFadesStill = 0.5;  // of the give of the round before
 // steps, or rounds, without a residual half as large as the best before, after which it won't come
 constexpr int kPatience = 5;
-constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
-constexpr double kSufficientDecrease = 1e-4;  // Armijo's, on |Phi|^2
 
 // Phi of one contact, y, and how the contact acts.
 [[gnu::always_inline]] inline ContactMode alartCurnier(const double* r, const double* u, int rows, double mu, double* y,
@@ -209,63 +206,53 @@ void searchLine(const ScaledProblem& problem, const Centre& centre, const Newton
   }
 }
 
-}  // namespace
+// Steps of Newton's method; the two iterates swap as they go.
+struct Steps {
+  const ScaledProblem& problem;
+  const double tolerance;
+  ContactEquations& equations;
+  SolverScratch& scratch;
+  Iterate &current, &trial;
+  int count = 0;
 
-int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations,
-                  SolverScratch& scratch, Iterate& current, Iterate& trial) {
-  double best = current.residual;
-  int patience = kPatience;
-  for (int n = 0; n < iterations; ++n) {
-    if (current.residual <= tolerance || !std::isfinite(current.residual)) return n;
-    NewtonStep newton(problem, current, {}, equations, scratch);
-    if (!newton.solve()) return n;
-    searchLine(problem, {}, newton, tolerance, scratch, current, trial);
+  bool isDone() const { return current.residual <= tolerance || !std::isfinite(current.residual); }
+
+  // False if the equations are singular, or nothing is left to spend.
+  bool step(const Centre& centre) {
+    NewtonStep newton(problem, current, centre, equations, scratch);
+    if (!newton.solve()) return false;
+    searchLine(problem, centre, newton, tolerance, scratch, current, trial);
     std::swap(current, trial);
-    if (current.residual < 0.5 * best) {
-      best = current.residual;
-      patience = kPatience;
-    } else if (--patience == 0) {
-      return n + 1;
-    }
+    ++count;
+    return true;
   }
-  return iterations;
-}
 
-int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
-                      SolverScratch& scratch, Iterate& current, Iterate& trial) {
-  double* const r_c = scratch.shift_centre.data();
-  double best = current.residual, epsilon = kProximalEpsilon;
-  int steps = 0, patience = kPatience;
-  for (int round = 0; round < rounds; ++round) {
-    if (current.residual <= tolerance || !std::isfinite(current.residual)) return steps;
-    std::copy(current.r, current.r + problem.rowCount(), r_c);
-    const Centre centre{r_c, epsilon};
-    const double enough = kRoundDecrease * merit(problem, centre, current);
-    bool is_solved = false;
-    int n = 0;
-    for (; n < kStepsPerRound && !is_solved; ++n) {
-      NewtonStep newton(problem, current, centre, equations, scratch);
-      if (!newton.solve()) return steps;
-      searchLine(problem, centre, newton, tolerance, scratch, current, trial);
-      std::swap(current, trial);
-      ++steps;
-      is_solved = current.residual <= tolerance || merit(problem, centre, current) <= enough;
+  enum class End : unsigned char { kSolved, kSpent, kSingular };
+  template <class IsSolved>
+  End round(const Centre& centre, int most, const IsSolved& is_solved) {
+    for (int n = 0; n < most; ++n) {
+      if (!step(centre)) return End::kSingular;
+      if (is_solved()) return End::kSolved;
     }
-    if (!is_solved)
-      epsilon /= kLessEpsilon;
-    else if (n <= kEasySteps)
-      epsilon = std::max(kLessEpsilon * epsilon, kLeastEpsilon);
-    if (current.residual < 0.5 * best) {
-      best = current.residual;
-      patience = kPatience;
-    } else if (--patience == 0) {
-      return steps;
-    }
+    return End::kSpent;
   }
-  return steps;
-}
+};
 
-namespace {
+// Notes residuals; true once kPatience of them weren't half as large as the best before.
+class Stall {
+ public:
+  explicit Stall(double residual) : best_(residual) {}
+  bool isAt(double residual) {
+    if (!(residual < 0.5 * best_)) return --left_ == 0;
+    best_ = residual;
+    left_ = kPatience;
+    return false;
+  }
+
+ private:
+  double best_;
+  int left_ = kPatience;
+};
 
 // True if `current` is the answer with u + epsilon (r - r_c); `u` is working memory.
 bool isSolved(const ScaledProblem& problem, const Centre& centre, double tolerance, const Iterate& current, double* u) {
@@ -274,19 +261,6 @@ bool isSolved(const ScaledProblem& problem, const Centre& centre, double toleran
     u[row] = current.u[row] + centre.epsilon * (current.r[row] - centre.r[row]);
   judge(problem, given);
   return given.residual <= tolerance;
-}
-
-bool solveRound(const ScaledProblem& problem, const Centre& centre, double tolerance, ContactEquations& equations,
-                SolverScratch& scratch, Iterate& current, Iterate& trial, int& steps) {
-  for (int n = 0; n < kStepsPerGivingRound; ++n) {
-    NewtonStep newton(problem, current, centre, equations, scratch);
-    if (!newton.solve()) return false;
-    ++steps;
-    searchLine(problem, centre, newton, tolerance, scratch, current, trial);
-    std::swap(current, trial);
-    if (isSolved(problem, centre, tolerance, current, trial.u)) return true;
-  }
-  return false;
 }
 
 // Fills scratch.give; returns the largest.
@@ -312,15 +286,49 @@ void addGive(const ScaledProblem& problem, const SolverScratch& scratch, Iterate
 
 }  // namespace
 
+int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations,
+                  SolverScratch& scratch, Iterate& current, Iterate& trial) {
+  Steps steps{problem, tolerance, equations, scratch, current, trial};
+  Stall stall(current.residual);
+  while (steps.count < iterations && !steps.isDone() && steps.step({}) && !stall.isAt(current.residual)) {
+  }
+  return steps.count;
+}
+
+int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
+                      SolverScratch& scratch, Iterate& current, Iterate& trial) {
+  double* const r_c = scratch.shift_centre.data();
+  double epsilon = kProximalEpsilon;
+  Steps steps{problem, tolerance, equations, scratch, current, trial};
+  Stall stall(current.residual);
+  for (int round = 0; round < rounds && !steps.isDone(); ++round) {
+    std::copy(current.r, current.r + problem.rowCount(), r_c);
+    const Centre centre{r_c, epsilon};
+    const double enough = kRoundDecrease * merit(problem, centre, current);
+    const int before = steps.count;
+    const Steps::End end = steps.round(centre, kMostRoundSteps, [&] {
+      return current.residual <= tolerance || merit(problem, centre, current) <= enough;
+    });
+    if (end == Steps::End::kSingular) break;
+    if (end == Steps::End::kSpent)
+      epsilon /= kLessEpsilon;
+    else if (steps.count - before <= kEasySteps)
+      epsilon = std::max(kLessEpsilon * epsilon, kLeastEpsilon);
+    if (stall.isAt(current.residual)) break;
+  }
+  return steps.count;
+}
+
 int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
                   SolverScratch& scratch, Iterate& current, Iterate& trial, double& largest) {
   double* const r_c = scratch.shift_centre.data();
   double epsilon = kGivingEpsilon, give = std::numeric_limits<double>::infinity();
-  int steps = 0;
+  Steps steps{problem, tolerance, equations, scratch, current, trial};
   for (int round = 0; round < rounds && scratch.operations_left >= 0; ++round) {
     std::copy(current.r, current.r + problem.rowCount(), r_c);
     const Centre centre{r_c, epsilon};
-    if (solveRound(problem, centre, tolerance, equations, scratch, current, trial, steps)) {
+    const auto is_solved = [&] { return isSolved(problem, centre, tolerance, current, trial.u); };
+    if (steps.round(centre, kStepsPerGivingRound, is_solved) == Steps::End::kSolved) {
       const double before = give;
       give = keepGive(problem, centre, current, scratch);
       if (give <= largest && !(give < kFadesStill * before)) break;
@@ -333,19 +341,25 @@ int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, Co
   }
   largest = give;
   if (std::isfinite(give)) addGive(problem, scratch, current);
-  return steps;
+  return steps.count;
 }
 
 bool iterateSoftly(const ScaledProblem& problem, double tolerance, ContactEquations& equations, SolverScratch& scratch,
                    Iterate& current, Iterate& trial, int& steps) {
   double* const r_c = scratch.shift_centre.data();
   std::fill(r_c, r_c + problem.rowCount(), 0.0);
+  Steps newton{problem, tolerance, equations, scratch, current, trial};
+  bool is_soft = false;
   for (const double epsilon : kSoftEpsilons) {
     std::fill(current.r, current.r + problem.rowCount(), 0.0);
     evaluate(problem, current);
-    if (solveRound(problem, {r_c, epsilon}, tolerance, equations, scratch, current, trial, steps)) return true;
+    const Centre centre{r_c, epsilon};
+    const auto is_solved = [&] { return isSolved(problem, centre, tolerance, current, trial.u); };
+    is_soft = newton.round(centre, kStepsPerGivingRound, is_solved) == Steps::End::kSolved;
+    if (is_soft) break;
   }
-  return false;
+  steps += newton.count;
+  return is_soft;
 }
 
 }  // namespace pincer::engine

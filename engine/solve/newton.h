@@ -16,6 +16,9 @@
 
 namespace pincer::engine {
 
+// Of equations contact by contact, of the W_ii of one: far above round-off, far below what one contact gives.
+constexpr double kContactsEpsilon = 1e-11;
+
 // Up to `iterations` steps from `current` (evaluated) until its residual is within `tolerance`; `trial` is working
 // memory. Swaps the two as it goes; `current` is the last iterate on return. Gives up early where the residual has
 // stopped falling. Returns the number of steps.

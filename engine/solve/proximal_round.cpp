@@ -8,9 +8,7 @@
 namespace pincer::engine {
 namespace {
 
-constexpr double kRoundTolerance = 1e-3;   // of |y - A^T r| at a round's start
-constexpr int kRoundTrials = 6;            // step lengths 1, 1/2, .. 1/32
-constexpr double kRoundSufficient = 1e-4;  // Armijo's
+constexpr double kRoundTolerance = 1e-3;  // of |y - A^T r| at a round's start
 constexpr double kNearlyFlat =
     0.1;  // of the slope at the start: of the energy, where a step ends; of a bracket, how near its ends a trial comes
 constexpr int kMostDoublings = 2, kMostTrials = 8;  // of a step's length
@@ -128,11 +126,11 @@ void ProximalRound::move(double t) {
 // leaves the cycles and corners where insisting on descent gets stuck.
 double ProximalRound::searchLine(double merit) {
   double t = 1, taken = 0, next = merit;
-  for (int trial = 0; trial < kRoundTrials; ++trial, t *= 0.5) {
+  for (int trial = 0; trial < kTrials; ++trial, t *= 0.5) {
     move(t - taken);
     taken = t;
     next = gradient();
-    if (next <= (1 - kRoundSufficient * t) * merit) break;
+    if (next <= (1 - kSufficientDecrease * t) * merit) break;
   }
   return next;
 }

@@ -28,6 +28,10 @@
 
 namespace pincer::engine {
 
+constexpr int kTrials = 6;                    // step lengths 1, 1/2, .. 1/32
+constexpr double kSufficientDecrease = 1e-4;  // of the merit, Armijo's
+constexpr int kMostRoundSteps = 8;            // of a round with Coulomb's law as it is
+
 enum class Shift : unsigned char { kFollows, kFrozen };
 
 class ProximalRound {

@@ -73,6 +73,8 @@ double referenceSpeed(const ContactProblem& problem);
 
 // Of the tolerance: what a strict problem asks of its warm start.
 constexpr double kStrictness = 1e-4;
+// Of Newton's method from within the tolerance to round-off: it converges quadratically there.
+constexpr int kPolishSteps = 2;
 
 // The residual at which a warm start counts as exact: what round-off asks for has no impulses that last.
 //   speed  of the problem, referenceSpeed;  noise  its [m/s]

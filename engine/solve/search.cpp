@@ -16,16 +16,16 @@ namespace {
 
 // The parameters of the search; docs/engine.md gives their reasons.
 constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
-constexpr double kEpsilonOfError = 1e3;             // the first is that times the start's error [s/m]
-constexpr double kMotion = 1e3, kSliding = 1e4;     // of the accuracy: slips of what isn't about to rest, and fast
-constexpr double kLeft = 0.1;                       // of what is enough: a round's own error
-constexpr double kFirstDescent = 1e-2;              // epsilon of descents, at most
-constexpr double kRough = 1e-2, kMostlyGive = 0.3;  // a descent's error, of its start's; a give, of its error
-constexpr int kMostRoundSteps = 8, kDescents = 6, kMostDescentSteps = 30;  // of a round; at a time; of one
-constexpr double kShareOfSlip = 3e-4;  // of what pushes: below it, in motion, errors don't show
-constexpr double kShareOfSlow = 0.1;   // of that slip: what is more would keep it from rest, however loose the accuracy
-constexpr double kSwept = 3e-4;        // of the problem's speeds: an error that sweeps reach for less than steps
-constexpr int kSweepsAtATime = 16;     // they cost two steps
+constexpr double kEpsilonOfError = 1e3;               // the first is that times the start's error [s/m]
+constexpr double kMotion = 1e3, kSliding = 1e4;       // of the accuracy: slips of what isn't about to rest, and fast
+constexpr double kLeft = 0.1;                         // of what is enough: a round's own error
+constexpr double kFirstDescent = 1e-2;                // epsilon of descents, at most
+constexpr double kRough = 1e-2, kMostlyGive = 0.3;    // a descent's error, of its start's; a give, of its error
+constexpr int kDescents = 6, kMostDescentSteps = 30;  // at a time; of one
+constexpr double kShareOfSlip = 3e-4;                 // of what pushes: below it, in motion, errors don't show
+constexpr double kShareOfSlow = 0.1;  // of that slip: what is more would keep it from rest, however loose the accuracy
+constexpr double kSwept = 3e-4;       // of the problem's speeds: an error that sweeps reach for less than steps
+constexpr int kSweepsAtATime = 16;    // they cost two steps
 
 constexpr int kProductsPerRoundContact = 3;             // a row of balls in a groove takes one
 constexpr std::int64_t kPerContactLooked = 150;         // multiplications
@@ -54,24 +54,13 @@ class Search {
     std::copy(r, r + rows(), scratch_.centre.data());
     look();
     result_.start = error_.residual;
-    if (isEnough() && (isExact() || !isQuiet())) {
+    if (squeezes(scratch_.centre)) {
+      goSoft();
+    } else if (isEnough() && (isExact() || !isQuiet())) {
       result_.method = SolveMethod::kWarmStart;
     } else {
       search();
     }
-    write(r, u);
-    return result_;
-  }
-
-  SolveResult runSoftly(double* r, double* u) {
-    weighContacts(problem_, scratch_);
-    letGo();
-    keep();
-    result_.method = SolveMethod::kNotConverged;
-    MoverMatrix matrix(problem_, scratch_);
-    ProximalRound round(problem_, matrix, scratch_);
-    result_.yields = matrix.fits();
-    if (matrix.fits()) softenShifted(round);
     write(r, u);
     return result_;
   }
@@ -103,6 +92,7 @@ class Search {
   // Of a round's own, at most [m/s].
   double left() const { return kLeft * std::max(limit(), options_.tolerance * referenceSpeed(problem_)); }
   bool isEnough() const { return isWithinTolerance() || error_.speed <= limit(); }
+  bool squeezes(const std::vector<double>& r) const { return isSqueezed(problem_, scratch_.weight, r.data()); }
   bool isQuiet() const { return slip_ <= kQuiet * referenceSpeed(problem_); }
 
   // At scratch.centre: y, u, error; keeps it if it is the best.
@@ -151,7 +141,7 @@ class Search {
     conclude();
     // what is new has no impulse yet
     if (scratch_.operations_left < 0 && result_.method == SolveMethod::kNotConverged) return sweep();
-    if (isSqueezed(problem_, scratch_.weight, scratch_.best_r.data())) soften(round);
+    if (squeezes(scratch_.best_r)) soften(round);
   }
 
   // An answer that is good enough already, brought to round-off.
@@ -311,6 +301,15 @@ class Search {
     result_.method = SolveMethod::kNotConverged;
   }
 
+  // The last resort where walls close on what friction jams, without looking for another answer first.
+  void goSoft() {
+    MoverMatrix matrix(problem_, scratch_);
+    ProximalRound round(problem_, matrix, scratch_);
+    result_.method = SolveMethod::kNotConverged;
+    result_.yields = matrix.fits();
+    matrix.fits() ? softenShifted(round) : holdNothing();
+  }
+
   // Contacts that are soft, about no impulse.
   void soften(ProximalRound& round) {
     result_.method = SolveMethod::kNotConverged;
@@ -326,8 +325,7 @@ class Search {
     const double least = std::max(left(), kRough * referenceSpeed(problem_));
     if (softens(round, Shift::kFrozen, {kSoftestEpsilon, least, kMostDescentSteps})) return;
     result_.yields = false;
-    letGo();
-    keep();
+    holdNothing();
   }
   bool softens(ProximalRound& round, Shift shift, const ProximalRound::Limits& limits) {
     letGo();
@@ -336,6 +334,10 @@ class Search {
     error_ = errorOf(problem_, scratch_.centre.data(), scratch_, scratch_.u.data());
     keep();
     return true;
+  }
+  void holdNothing() {
+    letGo();
+    keep();
   }
   // To no impulse.
   void letGo() {
@@ -350,7 +352,7 @@ class Search {
     respond(problem_, scratch_.best_r.data(), scratch_);
     error_ = respondedError(problem_, scratch_.best_r.data(), scratch_, scratch_.best_u.data());
     const SweptResult sweeps =
-        sweepUntil(problem_, enough, error_, scratch_, scratch_.best_r.data(), scratch_.best_u.data());
+        Sweeps(problem_, scratch_, scratch_.best_r.data()).until(enough, error_, scratch_.best_u.data());
     result_.iterations += sweeps.sweeps;
     error_ = best_ = sweeps.error;
     result_.method = error_.speed <= enough ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
@@ -387,11 +389,6 @@ class Search {
 SolveResult searchImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch,
                            double* r, double* u) {
   return Search(problem, options, scratch).run(r, u);
-}
-
-SolveResult softenImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch,
-                           double* r, double* u) {
-  return Search(problem, options, scratch).runSoftly(r, u);
 }
 
 }  // namespace pincer::engine

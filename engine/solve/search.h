@@ -7,13 +7,9 @@
 
 namespace pincer::engine {
 
-// From `r`, in the cones; `r`, `u` and the result as those of solveContacts, but that unsolved impulses may add energy.
+// From `r`, in the cones; if that squeezes (squeeze.h), from none, as if contacts were soft, with the shift of no
+// impulse. `r`, `u` and the result as those of solveContacts, but that unsolved impulses may add energy.
 SolveResult searchImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch,
-                           double* r, double* u);
-
-// As if contacts were soft, with the shift of no impulse: the last resort where walls close on what friction jams
-// (squeeze.h). Yields, or is no impulse at all.
-SolveResult softenImpulses(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch,
                            double* r, double* u);
 
 }  // namespace pincer::engine

@@ -6,15 +6,14 @@
 #include "pincer/engine/solve/cone.h"
 #include "pincer/engine/solve/inverse3.h"
 #include "pincer/engine/solve/mobility.h"
+#include "pincer/engine/solve/newton.h"
 #include "pincer/engine/solve/residual.h"
 #include "pincer/engine/solve/squeeze.h"
 
 namespace pincer::engine {
 namespace {
 
-constexpr double kSmallEpsilon = 1e-11;  // of w_i: far above round-off, far below what one contact gives
-constexpr int kSmallSteps = 4;           // more are a sign that full steps don't do
-constexpr int kSmallPolishSteps = 2;     // beyond the tolerance, to round-off
+constexpr int kSmallSteps = 4;     // more are a sign that full steps don't do
 constexpr int kSmallContacts = 3;  // so many only of as many movers: a body on three feet is held more than six-fold
 
 // b becomes the solution of A x = b, by elimination with row pivots. False if a pivot is 0 or not finite.
@@ -159,7 +158,7 @@ class SmallProblem {
     double best = is_close ? start : options.tolerance;  // a residual above is no answer
     bool found = false;
     if (is_close) keep(r_out, u_out);
-    const int steps = is_close ? kSmallPolishSteps : kSmallSteps;
+    const int steps = is_close ? kPolishSteps : kSmallSteps;
     for (int n = 0; n < steps; ++n) {
       if (!step(blocks)) break;
       ++result.iterations;
@@ -282,7 +281,7 @@ class SmallProblem {
       b_[k] = -u_[k];
     }
     if (mode == ContactMode::kSlide) slide(i, y);
-    for (int k = first; k < first + rows; ++k) J_[k][k] += kSmallEpsilon * w;
+    for (int k = first; k < first + rows; ++k) J_[k][k] += kContactsEpsilon * w;
     return mode;
   }
 

@@ -47,6 +47,7 @@ int mostRows(const ContactProblem& problem) {
 
 Sweeps::Sweeps(const ContactProblem& problem, SolverScratch& scratch, double* r)
     : problem_(problem),
+      scratch_(scratch),
       r_(r),
       y_(scratch.y.data()),
       terms_(scratch.local.data()),
@@ -89,55 +90,62 @@ void Sweeps::relax(int i) {
     // contacts, and most rows needn't be looked at.
     if (r_i[kNormalRow] == 0 && normalVelocityOf(form, q_i[kNormalRow], y_) >= 0)
       return std::fill(change_i, change_i + rows, 0.0);
-    double u[kMaxContactRows], r[kMaxContactRows];
+    double u[kMaxContactRows];
     velocityOf(form, rows, q_i, y_, u);
-    const double shift = solveOwn(i, form, rows, u, r);
+    const Own own = solveOwn(i, form, rows, u);
     double change2 = 0;
     for (int k = 0; k < rows; ++k) {
-      change_i[k] = r[k] - r_i[k];
-      r_i[k] = r[k];
+      change_i[k] = own.r[k] - r_i[k];
+      r_i[k] = own.r[k];
       change2 += change_i[k] * change_i[k];
       work_of_change_ += q_i[k] * change_i[k];
     }
-    work_of_change_ += shift * change_i[kNormalRow];
-    work_of_way_ += shift * way_i[kNormalRow];
+    work_of_change_ += own.shift * change_i[kNormalRow];
+    work_of_way_ += own.shift * way_i[kNormalRow];
     largest_change2_ = std::max(largest_change2_, weight_[i] * weight_[i] * change2);
     addImpulse(form, rows, change_i, y_);
   });
 }
 
-// r = the impulse of contact i, which has the velocity u with the present one. Returns its mu |u_T| with r.
-[[gnu::always_inline]] inline double Sweeps::solveOwn(int i, const RoundContact& round, int, double* u, double* r) {
+// Of contact i, which has the velocity u with the present impulse.
+[[gnu::always_inline]] inline Sweeps::Own Sweeps::solveOwn(int i, const RoundContact& round, int, double* u) {
   const double* const r_i = r_ + problem_.firstRow(i);
   const double mu = problem_.friction(i);
-  for (int k = 0; k < kNormalRow; ++k) r[k] = r_i[k] - round.inverse_W_tt * u[k];
-  r[kNormalRow] = r_i[kNormalRow] - round.inverse_W_nn * u[kNormalRow];
-  return mu * limitFriction(r, std::integral_constant<int, kTorsionRow>(), mu) / round.inverse_W_tt;
+  Own own;
+  for (int k = 0; k < kNormalRow; ++k) own.r[k] = r_i[k] - round.inverse_W_tt * u[k];
+  own.r[kNormalRow] = r_i[kNormalRow] - round.inverse_W_nn * u[kNormalRow];
+  own.shift = mu * limitFriction(own.r, std::integral_constant<int, kTorsionRow>(), mu) / round.inverse_W_tt;
+  return own;
 }
 template <class Rows>
-[[gnu::always_inline]] inline double Sweeps::solveOwn(int i, std::span<const ContactSide>, Rows rows, double* u,
-                                                      double* r) {
+[[gnu::always_inline]] inline Sweeps::Own Sweeps::solveOwn(int i, std::span<const ContactSide>, Rows rows, double* u) {
   double* const terms = termsOf(i);
   const double *const inverse = terms + kTermsBefore, *const W = inverse + rows * rows;
   const double* const r_i = r_ + problem_.firstRow(i);
   const double mu = problem_.friction(i);
+  Own own;
   if (terms[0] > 0) {
-    for (int k = 0; k < kTorsionRow; ++k) r[k] = r_i[k] - terms[k == kNormalRow] * u[k];
-    return mu * limitFriction(r, std::integral_constant<int, kTorsionRow>(), mu) / terms[0];
+    for (int k = 0; k < kTorsionRow; ++k) own.r[k] = r_i[k] - terms[k == kNormalRow] * u[k];
+    own.shift = mu * limitFriction(own.r, std::integral_constant<int, kTorsionRow>(), mu) / terms[0];
+    return own;
   }
   for (int k = 0; k < rows; ++k) {
-    r[k] = r_i[k];
-    for (int l = 0; l < rows; ++l) r[k] -= inverse[rows * l + k] * u[l];
+    own.r[k] = r_i[k];
+    for (int l = 0; l < rows; ++l) own.r[k] -= inverse[rows * l + k] * u[l];
   }
-  if (isInCone(r, rows, mu)) return terms[1] = 0;  // it sticks
+  if (isInCone(own.r, rows, mu)) {  // it sticks
+    own.shift = terms[1] = 0;
+    return own;
+  }
   for (int k = 0; k < rows; ++k) {
     for (int l = 0; l < rows; ++l) u[k] -= W[rows * l + k] * r_i[l];
   }
-  slide_steps_ += solveOneContact(W, rows, u, rows, mu, r, terms[1]);
+  slide_steps_ += solveOneContact(W, rows, u, rows, mu, own.r, terms[1]);
   for (int k = 0; k < rows; ++k) {
-    for (int l = 0; l < rows; ++l) u[k] += W[rows * l + k] * r[l];
+    for (int l = 0; l < rows; ++l) u[k] += W[rows * l + k] * own.r[l];
   }
-  return mu * std::sqrt(tangentNorm2(u, rows));
+  own.shift = mu * std::sqrt(tangentNorm2(u, rows));
+  return own;
 }
 
 void Sweeps::sweep(bool backwards) {
@@ -214,33 +222,41 @@ void Sweeps::goFurther(int i, double a, double b) {
   });
 }
 
-SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch,
-                       double* r, double* u) {
-  const int n = problem.contactCount();
+SweptResult Sweeps::until(double enough, const ContactError& start, double* u) {
+  const int n = problem_.contactCount();
   const bool rests = start.speed <= enough;
   const int most = std::clamp(kVisits / n, kFewestSweeps, kMostSweeps);
-  Sweeps method(problem, scratch, r);
   SweptResult result{0, start};
   int measured = 0;
   const auto isEnough = [&] {
-    if (measured != result.sweeps) result.error = respondedError(problem, r, scratch, u);
+    if (measured != result.sweeps) result.error = respondedError(problem_, r_, scratch_, u);
     measured = result.sweeps;
     return result.error.speed <= enough;
   };
   for (;;) {
-    const bool is_spent = !spend(kPerContactSwept * n, scratch);
+    const bool is_spent = !spend(kPerContactSwept * n, scratch_);
     // to and fro would be half as fast: what was visited last learns nothing from being visited first
-    method.sweep(false);
+    sweep(false);
     ++result.sweeps;
     if (result.sweeps == most || (is_spent && result.sweeps >= kFewestSweeps))
       break;  // contacts that are new have no impulse yet: every tick gets a few
-    const bool is_due = result.sweeps % kBetweenLooks == 0 ? method.largestChange() <= kWorthALook * enough
+    const bool is_due = result.sweeps % kBetweenLooks == 0 ? largestChange() <= kWorthALook * enough
                                                            : rests && result.sweeps == kRestingSweeps;
     if (is_due && isEnough()) break;
-    method.accelerate();
+    accelerate();
   }
   isEnough();
   return result;
+}
+
+void Sweeps::stop(int sweeps) {
+  const int n = problem_.contactCount();
+  std::fill(r_, r_ + problem_.rowCount(), 0.0);
+  std::fill(y_, y_ + kMoverFreedoms * problem_.movers, 0.0);
+  for (int k = 0; k < sweeps && (k < kFewestSweeps || scratch_.operations_left >= 0); ++k) {
+    sweep(k % 2 == 1);
+    spend(kPerContactSwept * n + kPerSlideStep * slide_steps_, scratch_);
+  }
 }
 
 }  // namespace pincer::engine

@@ -20,6 +20,11 @@ namespace pincer::engine {
 constexpr std::int64_t kPerContactSwept = 250;  // multiplications of a sweep, but for
 constexpr std::int64_t kPerSlideStep = 60;      // those of a step of a search for a slide (local_contact.h)
 
+struct SweptResult {
+  int sweeps = 0;
+  ContactError error;
+};
+
 // Sweeps over the impulses `r`, whose contacts are weighed, each at a cost linear in the contacts; scratch.y is A^T r,
 // and follows. Uses scratch.local, change, work, direction and way.
 class Sweeps {
@@ -31,22 +36,30 @@ class Sweeps {
   // After each sweep but the last.
   void accelerate();
 
+  // From the warm start, whose u `u` is, until the error is at most `enough` [m/s] or `start` shows that a few do.
+  SweptResult until(double enough, const ContactError& start, double* u);
+
+  // To and fro, from no impulse at all: `sweeps`, or a few where the budget is spent.
+  void stop(int sweeps);
+
+ private:
   // How far the last sweep changed a contact's own velocity, at most: w_i |change of r_i| [m/s].
   double largestChange() const { return std::sqrt(largest_change2_); }
 
-  // Of the searches for slides in the last sweep.
-  int slideSteps() const { return slide_steps_; }
-
- private:
   double* termsOf(int i) const { return terms_ + stride_ * i; }
   void fillTerms(int i);
   void relax(int i);
-  double solveOwn(int i, const RoundContact& round, int rows, double* u, double* r);
+  // A contact's own impulse, and its mu |u_T| with that.
+  struct Own {
+    double r[kMaxContactRows], shift;
+  };
+  Own solveOwn(int i, const RoundContact& round, int rows, double* u);
   template <class Rows>
-  double solveOwn(int i, std::span<const ContactSide> sides, Rows rows, double* u, double* r);
+  Own solveOwn(int i, std::span<const ContactSide> sides, Rows rows, double* u);
   void goFurther(int i, double a, double b);
 
   const ContactProblem& problem_;
+  SolverScratch& scratch_;
   double* const r_;
   double* const y_;
   static constexpr int kTermsBefore = 2;  // numbers before the matrices
@@ -59,16 +72,7 @@ class Sweeps {
   const double* const weight_;
   double work_of_change_ = 0, work_of_way_ = 0;  // (q + s) . z and p [J]
   double largest_change2_ = 0;                   // [(m/s)^2]
-  int slide_steps_ = 0;
+  int slide_steps_ = 0;                          // of the searches for slides in the last sweep
 };
-
-// From the warm start `r`, whose y = A^T r and u scratch.y and `u` are, until the error is at most
-// `enough` [m/s] or `start` shows that a few do.
-struct SweptResult {
-  int sweeps = 0;
-  ContactError error;
-};
-SweptResult sweepUntil(const ContactProblem& problem, double enough, const ContactError& start, SolverScratch& scratch,
-                       double* r, double* u);
 
 }  // namespace pincer::engine

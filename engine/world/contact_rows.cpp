@@ -129,7 +129,10 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
   });
   if (c.a.kind == SideKind::kJoint) {
     const JointRowScratch& row = scratch.joint_rows[static_cast<std::size_t>(c.a.index)];
-    if (row.isBrake()) fillBrake(row, q_i, r_i);
+    if (row.isBrake()) {  // the impulse that holds it closed is given
+      q_i[kNormalRow] = -row.grip * row.limit;
+      r_i[kNormalRow] = row.limit;
+    }
   }
   PINCER_ASSERT(!(c.mu < 0));
   scratch.mu[i] = c.mu;

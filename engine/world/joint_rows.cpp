@@ -243,11 +243,6 @@ void putJointRows(const WorldModel& model, const WorldState& state, WorldScratch
   }
 }
 
-void fillBrake(const JointRowScratch& row, double* q, double* r) {
-  q[kNormalRow] = -row.grip * row.limit;
-  r[kNormalRow] = row.limit;
-}
-
 void noteStopHits(const WorldModel& model, WorldScratch& scratch) {
   for (std::size_t slot = 0; slot < scratch.joint_rows.size(); ++slot) {
     const JointRowScratch& row = scratch.joint_rows[slot];

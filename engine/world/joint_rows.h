@@ -35,9 +35,6 @@ void startJointRows(const WorldModel& model, const WorldState& state, WorldScrat
 // After predictTrees: puts the rows that are wanted among the contacts, in place of those that are there.
 void putJointRows(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
-// Fills q_n of a brake and the impulse that holds it closed (contact_rows.h).
-void fillBrake(const JointRowScratch& row, double* q, double* r);
-
 // Adds the stops that are hit in this part of the tick to scratch.impact_pairs.
 void noteStopHits(const WorldModel& model, WorldScratch& scratch);
 

@@ -56,7 +56,8 @@ class IslandSolve {
     island_.hit_operations = 0;
     if (!island_.has_sides && !(is_grip_ = readGrip(model_, scratch_, order_, grip_))) fillSides();
     if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
-    island_.rests = restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result);
+    if (problem_.calm) projectOntoCones(problem_, island_.r);
+    island_.rests = problem_.calm && restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result);
     if (island_.rests) {
       island_.operations = 0;
       return;

@@ -17,21 +17,16 @@ namespace fs = std::filesystem;
 
 const std::map<std::string, std::string> kWritesImpulses = {
     {"solveContacts", "the front door"},
-    {"restsAsItIs", "the front door, where the last tick's are still right"},
     {"solveSmallProblem", "way 1: the small form, up to three contacts"},
     {"solveStuckContacts", "way 2, where all stick: one step"},
     {"solveGripProblem", "the same step, of a free body between flat pads"},
     {"solveFewContacts", "way 2: up to sixty"},
     {"solvePointProblem", "way 2, last resort of a point between walls"},
     {"searchImpulses", "way 3: many; descents, rounds and sweeps"},
-    {"sweepUntil", "way 3, between balls and where factors don't fit"},
-    {"stopBySweeps", "where there is no answer: the same sweeps, from none at all"},
-    {"Sweeps", "the sweeps themselves"},
-    {"solveOwn", "one contact of a sweep"},
+    {"stopBySweeps", "the front door, where there is no answer: the same sweeps, from none at all"},
+    {"Sweeps", "way 3, between balls and where factors don't fit: contact by contact"},
     {"solveOneContact", "one contact, exactly"},
     {"projectOntoCones", "the law of all of them"},
-    {"softenImpulses", "contacts that squeeze without end, as if they were soft"},
-    {"fillBrake", "a brake's normal impulse, which is given"},
 };
 
 // Names of functions with a parameter `r` that they may write.

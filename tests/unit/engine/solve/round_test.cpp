@@ -96,7 +96,7 @@ TEST(RoundContact, IsSweptAsItsBlocksAre) {
       const double enough = 1e-12 * referenceSpeed(problem);
       weighContacts(problem, scratch);
       const ContactError start = errorOf(problem, r.data(), scratch, u.data());
-      converged &= sweepUntil(problem, enough, start, scratch, r.data(), u.data()).error.speed <= enough;
+      converged &= Sweeps(problem, scratch, r.data()).until(enough, start, u.data()).error.speed <= enough;
       found[form] = u;
     }
     if (!converged) continue;

@@ -27,7 +27,7 @@ struct Ticks {
     weighContacts(problem, scratch);
     ContactError error = errorOf(problem, r.data(), scratch, u.data());
     for (int tick = 0; tick < 200 && error.speed > enough; ++tick)
-      error = sweepUntil(problem, enough, error, scratch, r.data(), u.data()).error;
+      error = Sweeps(problem, scratch, r.data()).until(enough, error, u.data()).error;
     residual = error.residual;
   }
 };
