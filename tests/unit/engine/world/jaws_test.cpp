@@ -252,8 +252,8 @@ struct TurningPalm {
   static constexpr double kJaw = 0.005;                            // half a jaw's thickness [m]
   WorldModel model = build();
   WorldState state = makeState(model,
-                               {startAt(Vec3(0, kBeside, 0)), startAt(Vec3::Zero()),
-                                startAt(Vec3(-kHalf - kJaw, 0, 0)), startAt(Vec3(kHalf + kJaw, 0, 0))},
+                               {startAt(Vec3(0, kBeside, 0)), startAt(Vec3::Zero()), startAt(Vec3(-kHalf - kJaw, 0, 0)),
+                                startAt(Vec3(kHalf + kJaw, 0, 0))},
                                {});
   WorldScratch scratch{model};
   double time = 0;
@@ -295,8 +295,8 @@ struct TurningPalm {
   Pose inPalm() const { return bodyPose(model, state, 1).inverse() * bodyPose(model, state, 0); }
 };
 
-// The jaws' free motion was along the palm's axes at the end of a tick, contacts in its middle: friction was wrung by the
-// difference until all of it slid, from the second tick on.
+// The jaws' free motion was along the palm's axes at the end of a tick, contacts in its middle: the difference wrung
+// friction until all of it slid, from the second tick on.
 TEST(Jaws, OnAPalmThatTurnsHoldWhatHangsFarBesideThem) {
   TurningPalm grip;
   while (grip.time < 0.4) grip.tick();
