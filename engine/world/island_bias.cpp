@@ -136,11 +136,18 @@ class BiasFit {
     }
   }
 
-  // Largest speed that no motion gives [m/s].
+  // The largest of b that no motion gives [m/s].
  public:
   double largestLeft() const {
     double largest = 0;
     for (int row = 0; row < rows_; ++row) largest = std::max(largest, std::abs(b_[row]));
+    return largest;
+  }
+  // And of what is asked for, which b weighs.
+  double largestSpeedLeft() const {
+    double largest = 0;
+    for (int row = 0; row < rows_; ++row)
+      if (weight_[row] > 0) largest = std::max(largest, std::abs(b_[row]) / weight_[row]);
     return largest;
   }
 
@@ -215,12 +222,12 @@ class BiasFit {
   double *b_, *image_, *weight_, *direction_, *gradient_, *response_;
 };
 
-// By how much contacts on what turns may contradict each other: a tick's chord is shorter than its arc [m/s].
+// By how much a point of what turns misses its arc at most: a tick's chord is shorter [m/s].
 double chordError(double h, const Motion& m, const Vec3& arm_W) {
   constexpr double kChord = 1.0 / 24;  // sin(x / 2) = x / 2 (1 - x^2 / 24 + ..)
   const double turn2 = h * h * m.w_W.squaredNorm();
   if (!(turn2 <= kFastTurn * kFastTurn)) return 0;
-  return kChord * turn2 * std::sqrt(std::max(m.v_W.squaredNorm(), (m.v_W + m.w_W.cross(arm_W)).squaredNorm()));
+  return kChord * turn2 * (m.v_W.norm() + m.w_W.cross(arm_W).norm());
 }
 
 double largestChordError(double h, std::span<const int> order, const std::vector<Contact>& contacts) {
@@ -229,7 +236,7 @@ double largestChordError(double h, std::span<const int> order, const std::vector
     const Contact& c = contacts[static_cast<std::size_t>(i)];
     if (c.a.kind == SideKind::kJoint) continue;
     largest =
-        std::max({largest, chordError(h, c.mover_a->start, c.arm_a_W), chordError(h, c.mover_b->start, c.arm_b_W)});
+        std::max(largest, chordError(h, c.mover_a->start, c.arm_a_W) + chordError(h, c.mover_b->start, c.arm_b_W));
   }
   return largest;
 }
@@ -273,7 +280,7 @@ void fitToTurn(double h, double offset_rate, const ContactProblem& problem, cons
   BiasFit fit(PushingBy::kLastTick, problem, r, u, order, contacts, memory);
   fit.gather();
   fit.minimise();
-  if (fit.largestLeft() <= most) fit.apply(h, offset_rate, q);
+  if (fit.largestSpeedLeft() <= most) fit.apply(h, offset_rate, q);
 }
 
 void giveWay(double h, double offset_rate, const ContactProblem& problem, const double* give, double* q,

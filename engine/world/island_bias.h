@@ -46,8 +46,8 @@ void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const Cont
 // After it, the same of velocities `u` [m/s] at the impulses `r`, of contacts that a tree carries along: joints keep
 // faces parallel that hold one thing, which asks more of it than it has freedoms, and a tick's chords don't agree on
 // where its arc ends. What no motion gives goes out of q, up to
-//   h^2 |w|^2 |v| / 24     w, v  of a body that touches, where it does or at its centre (chord and arc), up to 0.1 rad
-//                          per tick: what hangs far beside its jaws goes by the chord of its centre
+//   h^2 |w|^2 (|v| + |w x p|) / 24, of the bodies on both sides     w, v, p  of a body, and from its centre to the
+//                          contact: chord and arc of both; up to 0.1 rad per tick
 // or it would be added to friction within the thing, tick by tick, until a face lets go (a box in two coupled jaws,
 // swung by 2 rad: 2 mm). Nothing changes if that is exceeded, or nothing turns.
 void fitToTurn(double h, double offset_rate, const ContactProblem& problem, const double* r, const double* u, double* q,

@@ -296,17 +296,18 @@ struct TurningPalm {
 };
 
 // The jaws' free motion was along the palm's axes at the end of a tick, contacts in its middle: the difference wrung
-// friction until all of it slid, from the second tick on.
+// friction until all of it slid, from the second tick on. Half a second later contacts contradicted each other by more
+// than a chord at the contacts' speed does, for the thing's centre is faster: 152 um.
 TEST(Jaws, OnAPalmThatTurnsHoldWhatHangsFarBesideThem) {
   TurningPalm grip;
   while (grip.time < 0.4) grip.tick();
   const Pose held = grip.inPalm();
   double slip = 0;
-  while (grip.time < 0.55) {
+  while (grip.time < 1) {
     grip.tick();
     slip = std::max(slip, (grip.inPalm().p - held.p).norm());
   }
-  constexpr double kFast = TurningPalm::kTurn * 0.05, kTick = 1e-3;
+  constexpr double kFast = TurningPalm::kTurn * 0.5, kTick = 1e-3;
   EXPECT_LT(slip, kTick * kTick * kFast * kFast * TurningPalm::kBeside);  // it goes by chords
   EXPECT_EQ(grip.status, kStepOk);
 }
