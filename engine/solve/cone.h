@@ -59,20 +59,20 @@ inline bool isInCone(const double* r, int rows, double mu, double slack = 0) {
   setVector(p, rows, mu * normal / yT, y, normal);
 }
 
-// x becomes Alart and Curnier's coupled projections of it: x_n = max(0, x_n), then x_T put into the disc of radius
-// mu x_n. Returns how much friction was missing of |x_T|, if it pushes.
+// r becomes Alart and Curnier's coupled projections of it: r_n = max(0, r_n), then r_T put into the disc of radius
+// mu r_n. Returns how much friction was missing of |r_T|, if it pushes.
 template <class Rows>
-[[gnu::always_inline]] inline double limitFriction(double* x, Rows rows, double mu) {
-  const double n = x[kNormalRow], most = mu * n;
+[[gnu::always_inline]] inline double limitFriction(double* r, Rows rows, double mu) {
+  const double n = r[kNormalRow], most = mu * n;
   if (!(n > 0)) {
-    for (int k = 0; k < rows; ++k) x[k] = 0;
+    for (int k = 0; k < rows; ++k) r[k] = 0;
     return 0;
   }
-  const double t2 = tangentNorm2(x, rows);
+  const double t2 = tangentNorm2(r, rows);
   if (!(t2 > most * most)) return 0;
   const double t = std::sqrt(t2), share = most / t;
-  for (int k = 0; k < rows; ++k) x[k] *= share;
-  x[kNormalRow] = n;
+  for (int k = 0; k < rows; ++k) r[k] *= share;
+  r[kNormalRow] = n;
   return t - most;
 }
 

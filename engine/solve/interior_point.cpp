@@ -202,10 +202,10 @@ class CentralPath {
 }  // namespace
 
 int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations,
-                      ContactEquations& equations, SolverScratch& scratch, Iterate& it) {
-  CentralPath path(problem, shift, equations, scratch, it);
+                      ContactEquations& equations, SolverScratch& scratch, Iterate& current) {
+  CentralPath path(problem, shift, equations, scratch, current);
   for (int n = 0; n < iterations; ++n)
-    if (it.residual <= tolerance || path.isSolved(tolerance) || !path.comesNearer() || !path.step()) return n;
+    if (current.residual <= tolerance || path.isSolved(tolerance) || !path.comesNearer() || !path.step()) return n;
   return iterations;
 }
 

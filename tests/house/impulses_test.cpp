@@ -21,19 +21,26 @@ const std::map<std::string, std::string> kWritesImpulses = {
     {"solveStuckContacts", "way 2, where all stick: one step"},
     {"solveGripProblem", "the same step, of a free body between flat pads"},
     {"solveFewContacts", "way 2: up to sixty"},
+    {"iterateNewton", "way 2: steps of Newton's method"},
+    {"iterateProximally", "way 2: rounds of it, with a proximal point"},
+    {"iterateGiving", "way 2: such rounds of contacts that contradict each other"},
+    {"iterateSoftly", "way 2: of contacts that squeeze, as if they were soft"},
+    {"followCentralPath", "way 2: an interior point, before Newton's method"},
     {"solvePointProblem", "way 2, last resort of a point between walls"},
     {"searchImpulses", "way 3: many; descents, rounds and sweeps"},
     {"stopBySweeps", "the front door, where there is no answer: the same sweeps, from none at all"},
     {"Sweeps", "way 3, between balls and where factors don't fit: contact by contact"},
     {"solveOneContact", "one contact, exactly"},
+    {"limitFriction", "the law of one contact"},
     {"projectOntoCones", "the law of all of them"},
 };
 
-// Names of functions with a parameter `r` that they may write.
+// Names of functions with a parameter `r`, or an iterate `current`, that they may write.
 std::set<std::string> writersIn(const fs::path& header) {
   std::ifstream in(header);
   const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  static const std::regex function(R"((\w+)\(([^()]*)\))"), written(R"((^|,)\s*(double\* r|VectorMap r)\s*(,|$))");
+  static const std::regex function(R"((\w+)\(([^()]*)\))"),
+      written(R"((^|,)\s*(double\* r|VectorMap r|Iterate& current)\s*(,|$))");
   std::set<std::string> names;
   for (std::sregex_iterator it(text.begin(), text.end(), function), end; it != end; ++it) {
     const std::string parameters = (*it)[2];
