@@ -82,7 +82,7 @@ class Search {
            (!problem_.strict ||
             error_.residual <= exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_)));
   }
-  // A looser accuracy than the default doesn't keep what is slow from rest [m/s].
+  // A looser accuracy than the default doesn't keep what is slow from rest, nor what slides from sweeps [m/s].
   double finest() const { return std::min(options_.accuracy, SolverOptions{}.accuracy); }
   // Error that is small enough [m/s].
   double limit() const {
@@ -164,7 +164,7 @@ class Search {
 
   bool isFar() const { return best_.speed > pace().far; }
   bool moves() const { return options_.accuracy > 0 && slip_ > kMotion * options_.accuracy; }
-  bool slides() const { return options_.accuracy > 0 && slip_ > kSliding * options_.accuracy; }
+  bool slides() const { return options_.accuracy > 0 && slip_ > kSliding * finest(); }
   bool isWithinReachOfSweeps() const { return limit() > kSwept * referenceSpeed(problem_); }
   const Pace& pace() const { return moves() ? kInMotion : kAtRest; }
 
