@@ -5,7 +5,7 @@
 #pragma once
 #include "pincer/engine/solve/lanes.h"
 
-#if __has_include(<sys/platform/x86.h>)
+#if defined(__x86_64__) && !defined(__clang__) && __has_include(<sys/platform/x86.h>)
 #include <sys/platform/x86.h>
 #endif
 
