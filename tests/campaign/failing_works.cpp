@@ -126,7 +126,9 @@ void runWithFailure(Case& c, const Work& work, const Failure& failure) {
   const fs::path log = c.folder.parent_path() / "failed";
   Launch launch = c.pincer(work.arguments);
   arrange(c.ground, failure, log, launch);
-  const Ended ended = c.run(launch, {.may_leave_parts = failure.call == "unlink"});
+  // A database that nothing can be written to any more keeps the journal by which its next reader undoes half a change.
+  const bool keeps_journal = failure.call == "write" && failure.lasts;
+  const Ended ended = c.run(launch, {.may_leave_parts = failure.call == "unlink" || keeps_journal});
   if (fs::exists(log) || failure.call == kAllocation) c.hit();
   requireSound(c, work, ended, failure.lasts);
 }
