@@ -35,7 +35,7 @@ struct Material {
 
 // The number of rows that the solver sees of a contact: 3 rows, with torsion 4, with rolling 6.
 inline int rowsOf(const Material& m) {
-  return m.rolling_radius > 0 ? kMaxContactRows : m.torsion_radius > 0 ? kRollingRow : kTorsionRow;
+  return m.rolling_radius > 0 ? kMaxContactRows : m.torsion_radius > 0 ? kRollingRow : kPointRows;
 }
 
 // Which shapes of different bodies may touch: if (as & other.with) or (other.as & with). Both 0: a

@@ -9,9 +9,10 @@
 
 namespace pincer::engine {
 
-constexpr int kNormalRow = 2;                    // rows 0 and 1 are t1 and t2
-constexpr int kMaxContactRows = 6;               // t1, t2, n, torsion, two of rolling
-constexpr int kTorsionRow = 3, kRollingRow = 4;  // about n; the first of two, about t1 and t2
+constexpr int kNormalRow = 2;                             // rows 0 and 1 are t1 and t2
+constexpr int kPointRows = 3;                             // of a contact without torsion and rolling: t1, t2, n
+constexpr int kMaxContactRows = 6;                        // t1, t2, n, torsion, two of rolling
+constexpr int kTorsionRow = kPointRows, kRollingRow = 4;  // about n; the first of two, about t1 and t2
 
 // of one contact; rows that it doesn't have are 0
 using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign>;

@@ -72,15 +72,15 @@ class Grip {
       const DoublePair response = pairAt(w_ + i) * pairAt(r_[kNormalRow] + i);
       largest = response > largest ? response : largest;
     }
-    return kTorsionRow * std::max(largest[0], largest[1]) > kLargestSqueeze * speed_;
+    return kPointRows * std::max(largest[0], largest[1]) > kLargestSqueeze * speed_;
   }
 
   // A step from r and u. False if there is none.
   bool step() {
-    alignas(16) GripLanes change[kTorsionRow];
+    alignas(16) GripLanes change[kPointRows];
     for (int i = 0; i < lanes_; i += 2) {
       const DoublePair hold = pairAt(holds_ + i);
-      times<kTorsionRow>([&](auto k) { pairAt(change[k] + i) = -pairAt(u_[k] + i) * hold; });
+      times<kPointRows>([&](auto k) { pairAt(change[k] + i) = -pairAt(u_[k] + i) * hold; });
     }
     respond(change);
     if (!factorise()) return false;
@@ -89,16 +89,16 @@ class Grip {
     setVelocities<false>(change);
     for (int i = 0; i < lanes_; i += 2) {
       const DoublePair hold = pairAt(holds_ + i);
-      times<kTorsionRow>([&](auto k) { pairAt(r_[k] + i) += pairAt(change[k] + i) * hold; });
+      times<kPointRows>([&](auto k) { pairAt(r_[k] + i) += pairAt(change[k] + i) * hold; });
     }
     return true;
   }
 
   void write(double* r, double* u) const {
     for (int n = 0; n < n_; ++n) {
-      for (int k = 0; k < kTorsionRow; ++k) {
-        r[kTorsionRow * n + k] = r_[k][lane_[n]];
-        u[kTorsionRow * n + k] = u_[k][lane_[n]];
+      for (int k = 0; k < kPointRows; ++k) {
+        r[kPointRows * n + k] = r_[k][lane_[n]];
+        u[kPointRows * n + k] = u_[k][lane_[n]];
       }
     }
   }
@@ -133,8 +133,8 @@ class Grip {
     const int i = lanes_, m = n + are_two;
     const double second = are_two ? 1 : 0;
     const auto pairOf = [&](double x, double y) { return DoublePair{x, second * y}; };
-    const double *const q_n = problem.q.data() + kTorsionRow * n, *const q_m = problem.q.data() + kTorsionRow * m;
-    const double *const r_n = r + kTorsionRow * n, *const r_m = r + kTorsionRow * m;
+    const double *const q_n = problem.q.data() + kPointRows * n, *const q_m = problem.q.data() + kPointRows * m;
+    const double *const r_n = r + kPointRows * n, *const r_m = r + kPointRows * m;
     const Vec3 &arm_n = *contact(n).arm_W, &arm_m = *contact(m).arm_W;
     DoublePair arm[3];
     times<3>([&](auto k) {
@@ -164,7 +164,7 @@ class Grip {
   // Where r and u say that it sticks, as nearly all do, the natural map is u~ itself.
   void addResidual(int i, PairResidual& sum) const {
     const DoublePair w = pairAt(w_ + i), mu = pairAt(mu_ + i), counts = pairAt(counts_ + i);
-    const DoublePair u[kTorsionRow] = {pairAt(u_[0] + i), pairAt(u_[1] + i), pairAt(u_[2] + i)};
+    const DoublePair u[kPointRows] = {pairAt(u_[0] + i), pairAt(u_[1] + i), pairAt(u_[2] + i)};
     const DoublePair slip2 = u[0] * u[0] + u[1] * u[1], response = w * pairAt(r_[kNormalRow] + i);
     const DoublePair shifted = u[kNormalRow] + mu * DoublePair{std::sqrt(slip2[0]), std::sqrt(slip2[1])};
     const DoublePair x = w * pairAt(r_[0] + i) - u[0], y = w * pairAt(r_[1] + i) - u[1], n = response - shifted,
@@ -172,9 +172,9 @@ class Grip {
     DoublePair error2 = slip2 + shifted * shifted;
     if (!areTrue(((n > 0) & (x * x + y * y <= rim * rim)) | (counts == 0))) {
       for (int l = 0; l < 2; ++l) {
-        const double r_l[kTorsionRow] = {r_[0][i + l], r_[1][i + l], r_[2][i + l]},
-                     u_l[kTorsionRow] = {u[0][l], u[1][l], u[2][l]};
-        error2[l] = naturalMap2(r_l, u_l, kTorsionRow, mu[l], w[l]);
+        const double r_l[kPointRows] = {r_[0][i + l], r_[1][i + l], r_[2][i + l]},
+                     u_l[kPointRows] = {u[0][l], u[1][l], u[2][l]};
+        error2[l] = naturalMap2(r_l, u_l, kPointRows, mu[l], w[l]);
       }
     }
     error2 *= counts;
@@ -195,25 +195,25 @@ class Grip {
     for (int p = 0; p < grip_.points; ++p) of_point[p] = dot(E_[p], E_[p]);
     for (int f = 0; f < face_count_; ++f) {
       const Face& face = faces_[f];
-      const double linear = kTorsionRow * root_mass_ * root_mass_ + (face.point >= 0 ? of_point[face.point] : 0);
+      const double linear = kPointRows * root_mass_ * root_mass_ + (face.point >= 0 ? of_point[face.point] : 0);
       for (int i = face.first; i < face.end; i += 2) {
         const DoublePair x = pairAt(arm_W_[0] + i), y = pairAt(arm_W_[1] + i), z = pairAt(arm_W_[2] + i);
         const DoublePair turn = (J.s[0] * x * x + J.s[1] * y * y + J.s[2] * z * z) +
                                 2.0 * (J.s[3] * x * y + J.s[4] * x * z + J.s[5] * y * z);
-        pairAt(w_ + i) = (linear + turn) / double{kTorsionRow};
+        pairAt(w_ + i) = (linear + turn) / double{kPointRows};
       }
     }
   }
 
   // y = A^T r
-  void respond(const GripLanes (&r)[kTorsionRow]) {
+  void respond(const GripLanes (&r)[kPointRows]) {
     Triple force{}, moment{};
     for (int p = 0; p < grip_.points; ++p) y_point_[p] = {};
     for (int f = 0; f < face_count_; ++f) {
       const Face& face = faces_[f];
-      DoublePair sum[kTorsionRow] = {}, turn[kTorsionRow] = {};
+      DoublePair sum[kPointRows] = {}, turn[kPointRows] = {};
       for (int i = face.first; i < face.end; i += 2) {
-        times<kTorsionRow>([&](auto k) {
+        times<kPointRows>([&](auto k) {
           constexpr int j = (k + 1) % 3, l = (k + 2) % 3;
           sum[k] += pairAt(r[k] + i);
           turn[k] += pairAt(arm_C_[j] + i) * pairAt(r[l] + i) - pairAt(arm_C_[l] + i) * pairAt(r[j] + i);
@@ -233,7 +233,7 @@ class Grip {
 
   // u = A y, plus q
   template <bool with_q>
-  void setVelocities(GripLanes (&u)[kTorsionRow]) const {
+  void setVelocities(GripLanes (&u)[kPointRows]) const {
     const Triple turn_W = F_ * y_angular_;
     for (int f = 0; f < face_count_; ++f) {
       const Face& face = faces_[f];
@@ -244,7 +244,7 @@ class Grip {
       });
       const Triple way = face.R.transposeTimes(way_W), w = face.R.transposeTimes(turn_W);
       for (int i = face.first; i < face.end; i += 2) {
-        times<kTorsionRow>([&](auto k) {
+        times<kPointRows>([&](auto k) {
           constexpr int j = (k + 1) % 3, l = (k + 2) % 3;
           const DoublePair velocity = way[k] + (w[j] * pairAt(arm_C_[l] + i) - w[l] * pairAt(arm_C_[j] + i));
           pairAt(u[k] + i) = with_q ? pairAt(q_[k] + i) + velocity : velocity;
@@ -338,7 +338,7 @@ class Grip {
   Triple E_[kMostGripPoints];
   int face_count_ = 0, lanes_ = 0, lane_[kMostGripContacts];
   Face faces_[kMostGripContacts];
-  alignas(16) GripLanes arm_W_[3], arm_C_[3], q_[kTorsionRow], r_[kTorsionRow], u_[kTorsionRow], mu_, w_, holds_,
+  alignas(16) GripLanes arm_W_[3], arm_C_[3], q_[kPointRows], r_[kPointRows], u_[kPointRows], mu_, w_, holds_,
       counts_;  // counts_: 1 of a contact, 0 of the lane that fills a pair up
   Triple y_linear_, y_angular_, y_point_[kMostGripPoints];
   GripArms arms_[kMostGripPoints + 1];  // per point; behind them of contacts without one
@@ -350,7 +350,7 @@ class Grip {
 
 bool solveGripProblem(const GripProblem& grip, const ContactProblem& problem, const SolverOptions& options,
                       SolverScratch& scratch, double* r, double* u, SolveResult& result) {
-  PINCER_ASSERT(grip.contacts == problem.contactCount() && problem.rowCount() == kTorsionRow * grip.contacts);
+  PINCER_ASSERT(grip.contacts == problem.contactCount() && problem.rowCount() == kPointRows * grip.contacts);
   Grip held(grip, problem, r);
   const ContactError start = held.error();
   result = {SolveMethod::kWarmStart, 0, start.residual, start.speed, start.residual, true};

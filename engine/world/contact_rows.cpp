@@ -32,6 +32,14 @@ struct Rates {
         longer(h == state.h_last ? 1 : std::min(h / state.h_last, kMostLonger)) {}
 };
 
+// How much of a place's way round its body since the last part of a tick goes on: nothing of half the arm. A rim that
+// tips from one side to the other and is foretold to go on is pushed back, in every tick.
+double shareOfWander(const Vec3& arm_W, const Vec3& last_arm_W) {
+  constexpr double kFar2 = 0.25;  // of the arm, squared; from half of that on, less and less of it
+  const double way2 = (arm_W - last_arm_W).squaredNorm(), far2 = kFar2 * arm_W.squaredNorm();
+  return way2 < far2 ? std::min(2 - 2 * way2 / far2, 1.0) : 0;
+}
+
 // The turn of the normal and of the arms from now to the end, from their motion since the middle of the last part
 // of a tick: n_end . v_end - n_mid . v_mid.
 double turnOfNormal(const Rates& rates, const Contact& c, const ContactMemory& memory) {
@@ -41,8 +49,12 @@ double turnOfNormal(const Rates& rates, const Contact& c, const ContactMemory& m
     const double v_i = c.R_WC(i, 0) * c.v_start_C[0] + c.R_WC(i, 1) * c.v_start_C[1] + c.R_WC(i, 2) * c.v_start_C[2];
     turn += (n_W[i] - memory.n_W[i]) * v_i;
   }
-  if (turns(c.mover_a->start)) turn += n_W.dot(c.mover_a->start.w_W.cross(c.arm_a_W - memory.arm_a_W));
-  if (turns(c.mover_b->start)) turn -= n_W.dot(c.mover_b->start.w_W.cross(c.arm_b_W - memory.arm_b_W));
+  const auto turnOfArm = [&](const Motion& start, const Vec3& arm_W, const Vec3& last_arm_W) {
+    if (!turns(start)) return 0.0;
+    return shareOfWander(arm_W, last_arm_W) * n_W.dot(start.w_W.cross(arm_W - last_arm_W));
+  };
+  turn += turnOfArm(c.mover_a->start, c.arm_a_W, memory.arm_a_W);
+  turn -= turnOfArm(c.mover_b->start, c.arm_b_W, memory.arm_b_W);
   return rates.turn * turn;
 }
 

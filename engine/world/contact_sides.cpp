@@ -22,7 +22,7 @@ void fillTurn(const Contact& c, int rows, double root, ContactSide& out) {
 
 void fillPointSide(const Contact& c, int rows, double sign, const PointScratch& point, ContactSide& out) {
   const Vec3 root = sign * point.root_inverse_mass;
-  for (int k = 0; k < kTorsionRow; ++k) {
+  for (int k = 0; k < kPointRows; ++k) {
     double* const A = out.A[k];
     for (int j = 0; j < 3; ++j) A[j] = root[j] * (point.turned ? point.R_WA.col(j).dot(c.R_WC.col(k)) : c.R_WC(j, k));
     A[3] = A[4] = A[5] = 0;
@@ -73,7 +73,7 @@ void fillSide(const WorldModel& model, WorldScratch& scratch, const Contact& c, 
     out.is_point = false;
     return fillTreeSide(model, scratch, c, rows, is_a, mover, out);
   }
-  out.is_point = side.kind == SideKind::kPoint && rows == kTorsionRow;
+  out.is_point = side.kind == SideKind::kPoint && rows == kPointRows;
   const double sign = is_a ? 1 : -1;
   if (side.kind == SideKind::kPoint) return fillPointSide(c, rows, sign, scratch.points[side.index], out);
   PINCER_ASSERT(isIndex(mover, root_inertia.size()) && model.bodies[side.index].dynamic);

@@ -70,8 +70,8 @@ bool haveFarClosed(const WorldModel& model, WorldScratch& scratch) {
     }
     before = &c;
     double v_C[kMaxContactRows];
-    relativeVelocity(c, end_a, end_b, kTorsionRow, v_C);
-    for (int k = 0; k < kTorsionRow; ++k) c.u_C[k] = v_C[k] + c.bias_C[k];
+    relativeVelocity(c, end_a, end_b, kPointRows, v_C);
+    for (int k = 0; k < kPointRows; ++k) c.u_C[k] = v_C[k] + c.bias_C[k];
     if (c.u_C[kNormalRow] >= 0) continue;
     c.far = false;
     ++closed;

@@ -24,7 +24,7 @@ class Face {
     bool is_face = true;
     forEachPushing([&](const Contact& c, const double* r, int rows) {
       if (!lead) lead = &c;
-      is_face = is_face && rows <= kTorsionRow + 1 && c.n_W().dot(lead->n_W()) > kSamePlane;
+      is_face = is_face && rows <= kPointRows + 1 && c.n_W().dot(lead->n_W()) > kSamePlane;
       const double w = c.mu * r[kNormalRow];
       weight_ += w;
       centre_W_ += w * c.p_W;

@@ -92,7 +92,7 @@ class GripReader {
 
 bool mayBeGrip(const IslandScratch& s, const Island& island, const std::vector<Contact>& contacts) {
   const int n = island.contacts;
-  if (n < kFewestGripContacts || n > kMostGripContacts || island.rows != kTorsionRow * n) return false;
+  if (n < kFewestGripContacts || n > kMostGripContacts || island.rows != kPointRows * n) return false;
   if (s.sides_per_contact > 2) return false;
   const auto at = [&](int k) -> const Contact& {
     return contacts[static_cast<std::size_t>(s.order[static_cast<std::size_t>(island.place + k)])];

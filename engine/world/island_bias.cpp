@@ -245,7 +245,7 @@ double largestChordError(double h, std::span<const int> order, const std::vector
 
 bool mayContradict(const ContactProblem& problem) {
   const int n = problem.contactCount();
-  const bool is_twisted = n >= 2 && problem.rowCount() > kTorsionRow * n;
+  const bool is_twisted = n >= 2 && problem.rowCount() > kPointRows * n;
   return problem.movers >= 2 && (n >= problem.movers || is_twisted);
 }
 

@@ -22,7 +22,7 @@ int openTicks(const Contact& c, double hovering) {
 bool keepsOverlap(const Contact& c) {
   if (!(c.offset_C[kNormalRow] < 0)) return false;
   double v_end_C[kMaxContactRows];
-  relativeVelocity(c, c.mover_a->end, c.mover_b->end, kTorsionRow, v_end_C);
+  relativeVelocity(c, c.mover_a->end, c.mover_b->end, kPointRows, v_end_C);
   return Vec3(v_end_C[0], v_end_C[1], v_end_C[kNormalRow]).norm() < kClosingSpeed;
 }
 

@@ -119,7 +119,7 @@ bool fitMotion(std::span<const Contact> contacts, Vec3& V) {
   Mat3 A = Mat3::Zero();
   V.setZero();
   for (const Contact& c : contacts) {
-    for (int k = 0; k < kTorsionRow; ++k) {
+    for (int k = 0; k < kPointRows; ++k) {
       if (!asks(c, k)) continue;
       const double weight = k == kNormalRow ? kNormalWeight * kNormalWeight : 1;
       const Vec3 row = c.R_WC.col(k);
@@ -139,7 +139,7 @@ void alignPoint(std::span<Contact> contacts, int first, double h, double offset_
   }
   for (Contact& c : contacts) {
     const int row = scratch.first_row[first++];
-    for (int k = 0; k < kTorsionRow; ++k) {
+    for (int k = 0; k < kPointRows; ++k) {
       const double bias = -c.R_WC.col(k).dot(V);
       if (!asks(c, k) || std::abs(bias - c.bias_C[k]) <= kFitted * largest) continue;
       scratch.q[row + k] += bias - c.bias_C[k];

@@ -169,7 +169,7 @@ void expectContact(const ContactMemory& c, const BodyModel& link, double sign, c
   TreeScratch& s = scratch.trees[link.tree];
   s.was_pressed = true;
   // A landing gave more than the contact will, and moments of torsion and rolling would need its radii.
-  if (c.closing || !c.r.tail<kMaxContactRows - kTorsionRow>().isZero(0)) s.is_expected = false;
+  if (c.closing || !c.r.tail<kMaxContactRows - kPointRows>().isZero(0)) s.is_expected = false;
   const Vec3 f_W = sign * share * (c.r[0] * c.t1_W + c.r[1] * c.n_W.cross(c.t1_W) + c.r[2] * c.n_W);
   LinkForce& sum = s.expected[link.link];
   sum.f_W += f_W;
