@@ -226,6 +226,8 @@ std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
   heap(
       "heaps/balls-100", [] { return ballWorld(100, 5, 1); }, 2);
   heap(
+      "heaps/discs-12", [] { return discWorld(12, 1); }, 2);
+  heap(
       "hulls/50", [] { return hullWorld(50, 1); }, whole ? 3 : 1.5);
   for (const double accuracy : {1e-4, 1e-3, 1e-2})  // the dial
     heap(
@@ -248,6 +250,8 @@ std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
   wall("3x8-masses-1e3", {.columns = 3, .rows = 8, .mass_ratio = 1e3}, 10);
   heap(
       "heaps/balls-400", [] { return ballWorld(400, 8, 1); }, 3);
+  heap(
+      "heaps/discs-50", [] { return discWorld(50, 1); }, 3);
   heap(
       "hulls/100", [] { return hullWorld(100, 1); }, 3);
   return all;

@@ -116,9 +116,21 @@ FamilyWorld wallWorld(const WallSpec& spec) {
   return maker.make();
 }
 
+namespace {
+
+// The i-th of what falls in layers of nine into a crate of half 60 mm.
+Vec3 placeAbove(int i) {
+  constexpr int kPerRow = 3;
+  constexpr double kSpacing = 0.038;
+  const int layer = i / (kPerRow * kPerRow), row = i / kPerRow % kPerRow, column = i % kPerRow;
+  return {kSpacing * (column - 1), kSpacing * (row - 1), 0.03 + kSpacing * layer};
+}
+
+}  // namespace
+
 FamilyWorld hullWorld(int hulls, std::uint64_t seed) {
-  constexpr int kCorners = 20, kPerRow = 3;  // points that a hull is made of, chosen; hulls side by side in the crate
-  constexpr double kSpacing = 0.038, kDensity = 1000, kFilled = 0.7;  // of the ellipsoid's volume, about
+  constexpr int kCorners = 20;                      // points that a hull is made of, chosen
+  constexpr double kDensity = 1000, kFilled = 0.7;  // of the ellipsoid's volume, about
   Uniform uniform(seed);
   WorldMaker maker(0.5, false);
   maker.addCrate(0.06);
@@ -126,12 +138,23 @@ FamilyWorld hullWorld(int hulls, std::uint64_t seed) {
     const Vec3 half = Vec3::Constant(0.015) + uniform.within(0.003);
     std::vector<Vec3> corners;
     for (int k = 0; k < kCorners; ++k) corners.push_back(uniform.direction().cwiseProduct(half));
-    const int layer = i / (kPerRow * kPerRow), row = i / kPerRow % kPerRow, column = i % kPerRow;
-    const Vec3 p(kSpacing * (column - 1), kSpacing * (row - 1), 0.03 + kSpacing * layer), axis = uniform.direction();
+    const Vec3 axis = uniform.direction();
     const Quat q = quatFromRotationVector(uniform(0, 3) * axis);
     const std::string name = fmt::format("hull{}", i);
     maker.add(name, contact::Convex{contact::Polytope::hullOf(corners, name)}, kFilled * kDensity * 4.19 * half.prod(),
-              p, q);
+              placeAbove(i), q);
+  }
+  return maker.make();
+}
+
+FamilyWorld discWorld(int discs, std::uint64_t seed) {
+  Uniform uniform(seed);
+  WorldMaker maker(0.5, false);
+  maker.addCrate(0.06);
+  for (int i = 0; i < discs; ++i) {
+    const Vec3 axis = uniform.direction();
+    const Quat q = quatFromRotationVector(uniform(0, 3) * axis);
+    maker.add(fmt::format("disc{}", i), contact::Cylinder{0.016, 0.004}, 0.02, placeAbove(i) + uniform.within(2e-3), q);
   }
   return maker.make();
 }

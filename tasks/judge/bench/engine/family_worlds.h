@@ -1,4 +1,4 @@
-// family_worlds: worlds by families and sizes: walls of bricks, heaps of hulls and of balls, pegs in holes.
+// family_worlds: worlds by families and sizes: walls of bricks, heaps of hulls, discs and balls, pegs in holes.
 // World frame W, z up; body 0 is the floor.
 #pragma once
 #include <cstdint>
@@ -31,6 +31,9 @@ FamilyWorld wallWorld(const WallSpec& spec);
 // Hulls of 20 corners in random directions on ellipsoids of half axes 12 to 18 mm, of water's density, fall in layers
 // of nine into a box of 120 x 120 mm; mu 0.5.
 FamilyWorld hullWorld(int hulls, std::uint64_t seed);
+
+// Discs of 32 x 8 mm and 20 g, turned in any direction, fall in layers of nine into a box of 120 x 120 mm; mu 0.5.
+FamilyWorld discWorld(int discs, std::uint64_t seed);
 
 // Balls of 10 mm radius and 50 g fall into a box with room for `side` x `side` of them in a layer; mu 0.5.
 FamilyWorld ballWorld(int balls, int side, std::uint64_t seed);
