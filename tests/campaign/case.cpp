@@ -74,7 +74,7 @@ Ended Case::run(const Launch& launch, const Expect& expect) {
   const std::set<std::string> before = filesIn(launch.folder);
   Ended ended = runUnjudged(launch);
   judge(launch, ended, expect);
-  const std::string stray = strayIn(launch, ended, before);
+  const std::string stray = strayIn(launch, ended, before, expect);
   if (!stray.empty() && !expect.may_leave_parts) fault(Verdict::kWrong, "left behind: " + stray, last_command_);
   return ended;
 }

@@ -126,9 +126,8 @@ void runWithFailure(Case& c, const Work& work, const Failure& failure) {
   const fs::path log = c.folder.parent_path() / "failed";
   Launch launch = c.pincer(work.arguments);
   arrange(c.ground, failure, log, launch);
-  // A database that nothing can be written to any more keeps the journal by which its next reader undoes half a change.
-  const bool keeps_journal = failure.call == "write" && failure.lasts;
-  const Ended ended = c.run(launch, {.may_leave_parts = failure.call == "unlink" || keeps_journal});
+  const Ended ended = c.run(launch, {.may_leave_parts = failure.call == "unlink",
+                                     .may_keep_journal = failure.call == "write" && failure.lasts});
   if (fs::exists(log) || failure.call == kAllocation) c.hit();
   requireSound(c, work, ended, failure.lasts);
 }

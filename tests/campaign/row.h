@@ -54,7 +54,8 @@ struct Expect {
   std::set<int> codes = {0, 1, 2, 3, 4, 5};
   std::vector<int> signals = {};  // that may end it besides the one that asked it to stop
   bool may_be_silent = false;     // standard error couldn't be written
-  bool may_leave_parts = false;   // nothing can be removed, or undone
+  bool may_leave_parts = false;   // nothing can be removed
+  bool may_keep_journal = false;  // nothing can be written: half a change is undone by whoever opens the database next
   long most_memory = 1'500;       // resident [MB]
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 
 namespace pincer::campaign {
 namespace {
@@ -52,8 +53,14 @@ std::optional<Finding> howItRefused(const Ended& e, const Expect& expect) {
   return {};
 }
 
+constexpr std::string_view kJournal = "-journal";  // SQLite's, behind the database's name
+
 bool isPart(const std::string& name) {
-  return name.ends_with(".part") || name.ends_with("-journal") || name.ends_with(".tmp") || name.find("gnuplot") == 0;
+  return name.ends_with(".part") || name.ends_with(kJournal) || name.ends_with(".tmp") || name.find("gnuplot") == 0;
+}
+
+bool isJournalOfOne(const std::string& name, const std::set<std::string>& files) {
+  return name.ends_with(kJournal) && files.contains(name.substr(0, name.size() - kJournal.size()));
 }
 
 }  // namespace
@@ -99,9 +106,11 @@ std::set<std::string> filesIn(const fs::path& folder) {
   return names;
 }
 
-std::string strayIn(const Launch& launch, const Ended& e, const std::set<std::string>& before) {
+std::string strayIn(const Launch& launch, const Ended& e, const std::set<std::string>& before, const Expect& expect) {
   if (e.signal == SIGKILL) return {};
-  for (const std::string& name : filesIn(launch.folder)) {
+  const std::set<std::string> files = filesIn(launch.folder);
+  for (const std::string& name : files) {
+    if (expect.may_keep_journal && isJournalOfOne(name, files)) continue;
     if (!before.contains(name) && (isPart(fs::path(name).filename()) || (e.signal == 0 && e.exit_code == 2)))
       return name;
   }

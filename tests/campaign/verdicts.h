@@ -23,8 +23,9 @@ std::optional<Finding> verdictOn(const Launch& launch, const Ended& ended, const
 std::set<std::string> filesIn(const fs::path& folder);
 
 // A file of the run's folder that nobody asked for: a part of an output; anything that wasn't there
-// `before` a usage error. Empty if there is none.
-std::string strayIn(const Launch& launch, const Ended& ended, const std::set<std::string>& before);
+// `before` a usage error. Empty if there is none, and if it is a journal that may stay beside its database.
+std::string strayIn(const Launch& launch, const Ended& ended, const std::set<std::string>& before,
+                    const Expect& expect);
 
 // The first control character that a terminal would obey, as text; empty if there is none. `text` is UTF-8.
 std::string controlCharacterIn(const std::string& text);
