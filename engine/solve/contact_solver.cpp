@@ -67,11 +67,10 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   if (is_solved) return;
   const bool is_few = problem.contactCount() <= kFewContacts;
   if (is_few) solveFew(problem, options, scratch, r, u, result);
-  const bool may_search = problem.contactCount() >= kManyContacts || !problem.first_side.empty();
   const bool is_short =
       !result.converged && !result.yields && options.effort == SolverEffort::kAll && scratch.operations_left >= 0;
   const bool squeezes = is_few && result.yields && isSqueezed(problem, scratch.weight, r);
-  if (!is_few || squeezes || (is_short && may_search)) {
+  if (!is_few || squeezes || is_short) {
     const SolveResult few = result;
     result = searchImpulses(problem, options, scratch, r, u);
     result.iterations += few.iterations;

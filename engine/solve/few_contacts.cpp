@@ -19,13 +19,12 @@ constexpr int kProximalRounds = 12, kInteriorPointSteps = 30;         // each ti
 
 // How long each method is given: where the tolerance alone counts, not the tick, longer.
 struct Patience {
-  int newton_steps, shift_updates, sweeps;
+  int newton_steps, sweeps;
 };
 constexpr Patience patienceOf(const SolverOptions& options) {
-  return options.accuracy > 0 ? Patience{12, 3, 60} : Patience{20, 20, 300};
+  return options.accuracy > 0 ? Patience{12, 60} : Patience{20, 300};
 }
 constexpr double kNearSolution = 1e-12;  // of the problem's speeds: slip that friction follows may be 1e-5 of them
-constexpr double kShiftedGap = 1e-6;     // of a problem with frozen shift, itself an approximation
 constexpr int kSweepsPerRound = 15;      // enough to leave the basin in which Newton's method failed
 constexpr int kGivingRounds = 12;        // of Newton's method on contacts that give way
 constexpr int kAffordableContacts = 20;  // beyond, only one attempt from the interior
@@ -76,9 +75,8 @@ class FewSearch {
     }
     if ((isEnough(options) && !isSqueezedNow()) || giveWay(options, most)) return SolveMethod::kNewton;
     if (options.effort != SolverEffort::kAll || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
-    if (!is_small && (goOnFromInside(options) || giveWay(options, most))) return SolveMethod::kInteriorPoint;
+    if (!is_small && goOnFromInside(options)) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
-    if (!(most > 0) && iterateOnShift(options)) return SolveMethod::kInteriorPoint;
     return sweepOn(options) ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
   }
 
@@ -158,8 +156,7 @@ class FewSearch {
     return goOnFromInside(options, equations);
   }
   bool goOnFromInside(const SolverOptions& options, ContactEquations& equations) {
-    iterations_ +=
-        followCentralPath(problem_, nullptr, kNearSolution, kInteriorPointSteps, equations, scratch_, current_);
+    iterations_ += followCentralPath(problem_, kNearSolution, kInteriorPointSteps, equations, scratch_, current_);
     keepBest();
     goOnProximally(options, equations);
     return isEnough(options) && !(options.largest_give > 0 && isSqueezedNow());
@@ -202,23 +199,6 @@ class FewSearch {
       for (int row = problem_.firstRow(i); row < problem_.firstRow(i + 1); ++row)
         r[row] = current_.r[row] / problem_.scale[i];
     return isSqueezed(unscaled_, scratch_.weight, r);
-  }
-
-  bool iterateOnShift(const SolverOptions& options) {
-    restartFromBest();
-    evaluate(problem_, current_);
-    takeShift();
-    for (int n = 0; n < patienceOf(options).shift_updates; ++n) {
-      iterations_ += followCentralPath(problem_, scratch_.shift.data(), kShiftedGap, kInteriorPointSteps, equations_,
-                                       scratch_, current_);
-      takeShift();
-      if (finish(options)) return true;
-    }
-    return false;
-  }
-  void takeShift() {
-    for (int i = 0; i < problem_.contactCount(); ++i)
-      scratch_.shift.data()[i] = std::sqrt(tangentNorm2(current_.u + problem_.firstRow(i), problem_.rows(i)));
   }
 
   void keepBest() {

@@ -1,7 +1,7 @@
 // few_contacts: up to kFewContacts contacts, to the tolerance, cheapest method first.
 //
-//   semi-smooth Newton (Alart-Curnier) -> interior point, then Newton with a proximal term -> interior point with
-//   frozen shift, updated -> projected Gauss-Seidel with exact local solves -> best iterate, flagged.
+//   semi-smooth Newton (Alart-Curnier) -> interior point, then Newton with a proximal term -> projected Gauss-Seidel
+//   with exact local solves -> best iterate, from which search.h goes on.
 //   Newton's method finishes what the others begin.
 // Of a dozen contacts and more the proximal term comes first, for an interior point costs as much as all else.
 //

@@ -19,9 +19,8 @@ constexpr double kSmoothing = 1e-15;       // of |u_T|, relative to the start's 
 
 class CentralPath {
  public:
-  CentralPath(const ScaledProblem& problem, const double* shift, ContactEquations& equations, SolverScratch& scratch,
-              Iterate& it)
-      : problem_(problem), shift_(shift), equations_(equations), scratch_(scratch), it_(it) {
+  CentralPath(const ScaledProblem& problem, ContactEquations& equations, SolverScratch& scratch, Iterate& it)
+      : problem_(problem), equations_(equations), scratch_(scratch), it_(it) {
     double** const vectors[] = {&x_, &z_, &dx_, &dz_, &lambda_, &target_, &defect_, &t_};
     double* memory = scratch.workspace.data();
     for (double** vector : vectors) {
@@ -87,9 +86,8 @@ class CentralPath {
       const int first = problem_.firstRow(i);
       const int rows = problem_.rows(i);
       const double* const u = it_.u + first;
-      const double slip =
-          shift_ ? shift_[i] : std::sqrt(tangentNorm2(u, rows) + kSmoothing * kSmoothing * size_ * size_);
-      setVector(t_ + first, rows, shift_ ? 0 : 1 / slip, u, 0);
+      const double slip = std::sqrt(tangentNorm2(u, rows) + kSmoothing * kSmoothing * size_ * size_);
+      setVector(t_ + first, rows, 1 / slip, u, 0);
       for (int k = 0; k < rows; ++k) defect_[first + k] = z_[first + k] - u[k];
       defect_[normal(i)] = z_[normal(i)] - u[kNormalRow] / friction(i) - slip;
     }
@@ -189,7 +187,6 @@ class CentralPath {
   }
 
   const ScaledProblem& problem_;
-  const double* shift_;
   ContactEquations& equations_;
   SolverScratch& scratch_;
   Iterate& it_;
@@ -201,9 +198,9 @@ class CentralPath {
 
 }  // namespace
 
-int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations,
-                      ContactEquations& equations, SolverScratch& scratch, Iterate& current) {
-  CentralPath path(problem, shift, equations, scratch, current);
+int followCentralPath(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations,
+                      SolverScratch& scratch, Iterate& current) {
+  CentralPath path(problem, equations, scratch, current);
   for (int n = 0; n < iterations; ++n)
     if (current.residual <= tolerance || path.isSolved(tolerance) || !path.comesNearer() || !path.step()) return n;
   return iterations;

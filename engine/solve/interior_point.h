@@ -19,10 +19,7 @@ constexpr int kInteriorPointVectors = 8;  // of working memory in SolverScratch:
 // From a point well inside the cones, up to `iterations` steps towards the solution, until residual or gap and defect
 // are within `tolerance`. Fills and evaluates `current`; returns the number of steps. It comes close to where solutions
 // are, not within 1e-10 of them: Newton's method follows.
-//   shift  if not null: values, one per contact, at which |u_T| is frozen [sqrt(J)]. The problem is convex then, and
-//          its solution always found, where the full law can trap the path; iterating on the values leads to the law's
-//          solution (V. Acary, F. Cadoux, C. Lemarechal, J. Malick, ZAMM 91 (2011) 155-175).
-int followCentralPath(const ScaledProblem& problem, const double* shift, double tolerance, int iterations,
-                      ContactEquations& equations, SolverScratch& scratch, Iterate& current);
+int followCentralPath(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations,
+                      SolverScratch& scratch, Iterate& current);
 
 }  // namespace pincer::engine

@@ -32,7 +32,7 @@ constexpr std::int64_t kPerContactLooked = 150;         // multiplications
 constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 ms
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
 constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
-constexpr int kHitSolves = 24;                          // that share what a tick's hits may take
+constexpr int kHitSolves = 6;                           // that share what a tick's hits may take
 constexpr int kPolishRounds = 3;                        // of what is quiet, on to round-off, by kPolishEpsilon
 constexpr double kPolishEpsilon = 1e-4, kQuiet = 1e-3;  // quiet: slip of what is about to rest, of the problem's speeds
 
@@ -54,6 +54,10 @@ class Search {
     std::copy(r, r + rows(), scratch_.centre.data());
     look();
     result_.start = error_.residual;
+    if (!(error_.residual <= 1)) {  // as a hit's in the tick after it: none at all leaves what asks for most
+      letGo();
+      look();
+    }
     if (squeezes(scratch_.centre)) {
       goSoft();
     } else if (isEnough() && (isExact() || !isQuiet())) {
@@ -171,8 +175,10 @@ class Search {
   // To where rounds succeed: what slides, or needn't be exact, by sweeps, as long as they get on; then by descents.
   void approach(ProximalRound& round) {
     double before = std::numeric_limits<double>::infinity();
-    const auto is_for_sweeps = [&] { return (slides() && isFar()) || (isWithinReachOfSweeps() && !isEnough()); };
-    while (is_for_sweeps() && best_.speed < pace().still_fading * before && !isSpent()) {
+    const auto is_for_it = [&] {
+      return (isFar() && (slides() || isHit())) || (isWithinReachOfSweeps() && !isEnough());
+    };
+    while (is_for_it() && best_.speed < pace().still_fading * before && !isSpent()) {
       before = best_.speed;
       smooth();
     }

@@ -27,7 +27,7 @@ void sizeForFew(int contacts, int movers, int movers_per_contact, SolverScratch&
   s.node.resize(static_cast<std::size_t>(movers));
   s.sides.resize(n * static_cast<std::size_t>(movers_per_contact));
   s.terms.resize(n);
-  for (std::vector<double>* per_contact : {&s.scale, &s.shift}) per_contact->resize(n);
+  s.scale.resize(n);
   s.active.resize(n);
 }
 

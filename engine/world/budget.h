@@ -14,9 +14,13 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
   if (isLimited(scratch)) scratch.operations_left -= operations;
 }
 
-// Work that solves of hits may take in a tick, per contact: some 100 sweeps. Beyond, no further hit cuts the tick, and
-// each of 24 solves ends with its share of it, some 4 sweeps: the best iterate counts, flagged.
-constexpr std::int64_t kHitOperations = 24'000;
+// Work that solves of hits may take in a tick, per contact: beyond, no further hit cuts the tick. Each of six solves
+// ends with its share of it, one run of 16 sweeps: the best iterate counts, flagged.
+constexpr std::int64_t kHitOperations = 6'000;
+// So many contacts are a heap: hits run through it by the hundred, sooner than a tick can follow.
+constexpr int kHeapContacts = 100;
+inline bool isHeap(const WorldState& state) { return state.contact_count > kHeapContacts; }  // it was, in the last tick
+
 inline bool haveHitsSpent(const WorldScratch& scratch) {
   return scratch.hit_operations > kHitOperations * static_cast<std::int64_t>(scratch.contacts.size());
 }

@@ -85,7 +85,7 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   const double margin =
       model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
   if (!boundsTouch(a, b, sa, sb, margin)) return;
-  noteFastPair(model, pair.a, pair.b, scratch);
+  noteFastPair(model, state, pair.a, pair.b, scratch);
   if (keepContacts(model, state, pair, scratch)) return;
   const auto collide = [&](const ColliderModel& ca, const Pose& X_WA, const ColliderModel& cb, const Pose& X_WB) {
     chargeQuery(ca, cb, scratch);

@@ -14,9 +14,11 @@ namespace pincer::engine {
 namespace {
 
 constexpr double kShortestFlight = 1.0 / 16;  // of a tick
-constexpr double kSlowWay = 0.5;              // of half the thickness, in a tick: the pair need not be swept
-constexpr double kEnergyRoundOff = 1e-12;     // of the energy that goes to and fro in a hit
-constexpr double kHardLanding = 1;            // of what gravity adds to a velocity in a tick
+// Of half the thinner one's thickness, in a tick: the pair need not be swept. In a heap it will do that neither has
+// passed the other's middle in the middle of the tick.
+constexpr double kSlowWay = 0.5, kSlowWayInHeap = 2;
+constexpr double kEnergyRoundOff = 1e-12;  // of the energy that goes to and fro in a hit
+constexpr double kHardLanding = 1;         // of what gravity adds to a velocity in a tick
 // gap at which a contact takes part in an impact [m]: what other contacts leave of the root
 constexpr double kTouching = 1e-7;
 
@@ -49,8 +51,9 @@ bool isOfBodies(const Contact& c, int a, int b) {
 }
 
 // True if two bodies that go `way` past each other in a tick have to be swept.
-bool isFarFor(const WorldModel& model, int a, int b, const Vec3& way) {
-  const double slow = kSlowWay * std::min(model.bodies[a].inner_radius, model.bodies[b].inner_radius);
+bool isFarFor(const WorldModel& model, const WorldState& state, int a, int b, const Vec3& way) {
+  const double thinner = std::min(model.bodies[a].inner_radius, model.bodies[b].inner_radius);
+  const double slow = (isHeap(state) ? kSlowWayInHeap : kSlowWay) * thinner;
   return way.squaredNorm() > slow * slow;
 }
 
@@ -304,10 +307,10 @@ double bounceRestitution(double restitution, double u, double acceleration, doub
   return flight >= shortest * -acceleration ? restitution : 0;
 }
 
-void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch) {
+void noteFastPair(const WorldModel& model, const WorldState& state, int a, int b, WorldScratch& scratch) {
   PINCER_ASSERT(a < b);
   const Vec3 way = model.options.h * (scratch.bodies[a].start.v_W - scratch.bodies[b].start.v_W);
-  if (!isFarFor(model, a, b, way)) return;
+  if (!isFarFor(model, state, a, b, way)) return;
   if (scratch.fast_pairs.size() < scratch.fast_pairs.capacity()) scratch.fast_pairs.push_back({a, b});
 }
 
@@ -316,7 +319,7 @@ void notePushedPairs(const WorldModel& model, const WorldState& state, WorldScra
   for (const PairModel& pair : model.pairs) {
     if (!scratch.bodies[pair.a].touched && !scratch.bodies[pair.b].touched) continue;
     const Vec3 way = scratch.h * (endVelocity(model, scratch, pair.a) - endVelocity(model, scratch, pair.b));
-    if (!isFarFor(model, pair.a, pair.b, way) || isTouching(model, state, pair.a, pair.b)) continue;
+    if (!isFarFor(model, state, pair.a, pair.b, way) || isTouching(model, state, pair.a, pair.b)) continue;
     const auto is_seen = [&](const Contact& c) { return isOfBodies(c, pair.a, pair.b); };
     if (std::any_of(scratch.contacts.begin(), scratch.contacts.end(), is_seen)) continue;
     if (isNoted(scratch.impact_pairs, pair.a, pair.b) || scratch.pushed_pairs.size() == scratch.pushed_pairs.capacity())

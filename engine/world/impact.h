@@ -43,7 +43,7 @@ double bounceRestitution(double restitution, double u, double acceleration, doub
 double gapAcceleration(const WorldModel& model, const WorldScratch& scratch, const Contact& c);
 
 // Notes the pair in scratch.fast_pairs if it needs to be swept.
-void noteFastPair(const WorldModel& model, int a, int b, WorldScratch& scratch);
+void noteFastPair(const WorldModel& model, const WorldState& state, int a, int b, WorldScratch& scratch);
 
 // Notes, after the solve, the pairs that contacts push at each other or past each other so fast that they need to be
 // swept, and that weren't near enough to be seen; for the rest of the tick. Only in worlds without a broad phase.

@@ -7,6 +7,7 @@
 #include "pincer/engine/world/colliders.h"
 #include "pincer/engine/world/joint_rows.h"
 #include "pincer/engine/world/most_numbered.h"
+#include "pincer/engine/world/room.h"
 
 namespace pincer::engine {
 namespace {
@@ -65,7 +66,7 @@ WorldSleep::WorldSleep(const WorldModel& model)
   rest.points.resize(model.points.size());
   rest.motions.resize(static_cast<std::size_t>(model.driven_count));
   rest.forces.reserve(model.bodies.size());
-  if (mayIslandsSleep(model)) contacts.reserve(room);
+  if (mayIslandsSleep(model)) makeRoom(contacts, room);
 }
 
 WorldScratch::WorldScratch(const WorldModel& model)
@@ -83,12 +84,10 @@ WorldScratch::WorldScratch(const WorldModel& model)
   for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].still = !model.bodies[i].dynamic;
   points.resize(model.points.size());
   for (PointScratch& point : points) point.has_hollows = model.has_hollows;
-  contacts.reserve(contact_count);
-  tried.reserve(contact_count);
-  fast_pairs.reserve(contact_count);
-  pushed_pairs.reserve(contact_count);
-  landed_pairs.reserve(contact_count);
-  impact_pairs.reserve(3 * contact_count);
+  makeRoom(contacts, contact_count);
+  makeRoom(tried, contact_count);
+  for (std::vector<ImpactPair>* pairs : {&fast_pairs, &pushed_pairs, &landed_pairs}) makeRoom(*pairs, contact_count);
+  makeRoom(impact_pairs, 3 * contact_count);
   for (const JointGroup& group : model.joint_groups) {
     const auto rows = static_cast<std::size_t>(group.count) * kMostJointRows;
     JointGroupScratch& out = joint_groups.emplace_back();
@@ -107,7 +106,7 @@ WorldScratch::WorldScratch(const WorldModel& model)
   struck.resize(model.bodies.size());
   pushed.resize(model.bodies.size());
   pushed_contacts.resize(contact_count);
-  if (mayIslandsSleep(model)) kept.reserve(contact_count);
+  if (mayIslandsSleep(model)) makeRoom(kept, contact_count);
   point_inputs.resize(model.points.size());
   motion_inputs.resize(static_cast<std::size_t>(model.driven_count));
   first_row.resize(contact_count + 1);

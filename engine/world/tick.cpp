@@ -27,10 +27,7 @@ constexpr int kMostRevisions = 4;      // of which joint rows are needed, in an 
 constexpr int kMostTurningParts = 64;  // that a tick is cut into for that
 constexpr std::int64_t kPerBody = 300, kPerPair = 100, kPerContact = 1000;  // multiplications besides the solver's
 constexpr double kShortestPart = 1e-9;  // of a tick: a hit sooner than that is a hit at once
-// Hits run through a heap by the hundred, sooner than a tick can follow: where so many
-// touch, what hits after the first few lands.
-constexpr std::size_t kHeap = 100;  // contacts
-constexpr int kMostHeapImpacts = 5;
+constexpr int kMostHeapImpacts = 5;     // of a heap: what hits after the first few lands
 
 class Tick {
  public:
@@ -174,7 +171,6 @@ class Tick {
     // A part that is cut so short that nothing is held back any more has landed it.
     landings_ += scratch_.impact_pairs.empty() ? lands : somethingLands();
     const double energy = isLimited(scratch_) ? energyOf(model_, state_, scratch_.gravity_W) : 0;
-    const bool is_heap = scratch_.contacts.size() > kHeap;
     wakeAll(scratch_);
     if (is_tried_) keepTried(scratch_);
     is_tried_ = false;
@@ -182,7 +178,7 @@ class Tick {
     chargeSurroundings();
     if (isSpent()) limitEnergy(model_, scratch_, energy, state_);
     note();
-    const bool are_enough = ++impacts_ >= (is_heap ? kMostHeapImpacts : kMostImpacts);
+    const bool are_enough = ++impacts_ >= (isHeap(state_) ? kMostHeapImpacts : kMostImpacts);
     if (isRepeated(t) || are_enough) impacts_ = kMostImpacts;
   }
 
@@ -254,8 +250,10 @@ class Tick {
   }
 
   // Contacts may fling a corner of a body further within this part than anything was looked for: those of a sheet
-  // between the floor and something heavy. Then its contacts are looked for so far. Whether there is such a body.
+  // between the floor and something heavy. Then its contacts are looked for so far. Whether there is such a body; in a
+  // heap, where that is one solve more of all that is hit, only if it is thin.
   bool flingsCorners(double h) {
+    const bool is_heap = isHeap(state_);
     bool flings = false;
     for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
       const BodyModel& body = model_.bodies[i];
@@ -263,7 +261,7 @@ class Tick {
       if (!s.touched || !body.dynamic || body.corner_reach == 0) continue;
       const double way =
           h * body.corner_reach * angularVelocity(body.rotation, s.X_WI_mid.q, s.angular_impulse_W).norm();
-      if (!(way > std::max(model_.options.contact_margin, s.flung))) continue;
+      if (!(way > std::max({model_.options.contact_margin, s.flung, is_heap ? body.inner_radius : 0.0}))) continue;
       s.flung = way;
       flings = true;
     }

@@ -8,6 +8,7 @@
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/world/budget.h"
 #include "pincer/engine/world/island_sleep.h"
+#include "pincer/engine/world/room.h"
 
 namespace pincer::engine {
 namespace {
@@ -53,8 +54,8 @@ LastAttempt::LastAttempt(const WorldModel& model)
     : is_wanted(model.has_broad_phase && !model.has_hollows && model.trees.empty()) {
   if (!is_wanted) return;
   const auto count = static_cast<std::size_t>(model.options.max_contacts);
-  contacts.reserve(count);
-  memories.reserve(count);
+  makeRoom(contacts, count);
+  makeRoom(memories, count);
   first_row.resize(count + 1);
   q.resize(count * kMaxContactRows);
 }

@@ -6,6 +6,7 @@
 #include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/local_contact.h"
 #include "pincer/engine/solve/residual.h"
+#include "pincer/engine/solve/search.h"
 #include "pincer/tests/support/contact_problems.h"
 
 namespace pincer::engine {
@@ -45,6 +46,23 @@ TEST(Sweeps, SweepsFindWhatNewtonFinds) {
     EXPECT_LE((newton.u - swept.u).norm(), 1e-7 * p.q.norm());  // both to 1e-10, times the condition of W
   }
   EXPECT_GE(compared, 95);
+}
+
+// The impulses of a hit were the start of the tick after it, which then asked for ten times as much as it would have
+// without any.
+TEST(Sweeps, SearchBeginsWithNoneWhereTheStartIsWorse) {
+  RandomScenes random(23);
+  for (int n = 0; n < 20; ++n) {
+    OwnedContactProblem p = random.cluster(20, 80, 10, 0.5, false);
+    const ContactProblem problem = p.view();
+    Eigen::VectorXd r[2] = {Eigen::VectorXd::Zero(p.q.size()), Eigen::VectorXd::Zero(p.q.size())}, u(p.q.size());
+    for (int i = 0; i < problem.contactCount(); ++i) r[1][problem.firstRow(i) + kNormalRow] = 10;
+    for (Eigen::VectorXd& start : r) {
+      SolverScratch scratch(problem.contactCount(), p.movers);
+      searchImpulses(problem, {}, scratch, start.data(), u.data());
+    }
+    EXPECT_EQ(r[0], r[1]) << n;
+  }
 }
 
 // How many sweeps it takes to a residual of 1e-6.

@@ -1,5 +1,6 @@
 // Walls of bricks: many contacts, redundant and interlocked.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 
 #include "pincer/engine/step.h"
 #include "pincer/engine/world/budget.h"
+#include "pincer/tests/support/effort.h"
 
 namespace pincer::engine {
 namespace {
@@ -109,8 +111,8 @@ TEST(Wall, ThatTouchesAnotherComesToRest) {
 }
 
 // A tick in which a wall was hit took three hundred times as long as the others: each of up to twenty solves went on
-// until it was exact. What a tick may take follows from its contacts: four solves with a quarter of it each, halves of
-// that from the fourth on, and a step more of each.
+// until it was exact. What a tick may take follows from its contacts: three solves with a sixth of it each, halves of
+// that from the fourth on, and a step more of each; beyond, the hit that is being taken needs four more.
 TEST(Wall, ThatIsHitTakesNoMoreThanItsShareOfWork) {
   for (const double speed : {5., 10., 20.}) {
     Wall wall({.columns = 6, .rows = 6, .hit_speed = speed}, {});
@@ -122,9 +124,37 @@ TEST(Wall, ThatIsHitTakesNoMoreThanItsShareOfWork) {
       most = std::max(most, scratch->hit_operations / std::max<std::int64_t>(1, std::ssize(scratch->contacts)));
     }
     EXPECT_GT(most, 0) << speed;
-    EXPECT_LT(most, 2 * kHitOperations) << speed;
+    EXPECT_LT(most, 3 * kHitOperations) << speed;
     EXPECT_LT(kineticEnergy(wall.model, wall.state) + potentialEnergy(wall.model, wall.state), start) << speed;
   }
+}
+
+// Impulses of a hit begin from none at all, where nothing slips yet: they weren't swept for that, and missed by as much
+// as the ball's speed. So did the tick after it, which began with the impulses of the hit.
+TEST(Wall, ThatIsHitIsSolvedToHalfTheSpeedOfTheHit) {
+  for (const double speed : {5., 10., 20.}) {
+    Wall wall({.columns = 6, .rows = 6, .hit_speed = speed}, {});
+    const ScratchHandle scratch = makeScratch(wall.model);
+    double worst = 0;
+    for (int n = 0; n < 60; ++n) worst = std::max(worst, step(wall.model, wall.state, *scratch).solve.error);
+    EXPECT_LT(worst, 0.5 * speed);
+  }
+}
+
+// The first ticks of a wall of 20 x 10 took twice and ten times as long as the same ticks with a scratch that had been
+// used: they touched six hundred pages that nothing had been written to.
+TEST(Wall, FindsMemoryThatWasTouchedBeforeItsFirstTick) {
+  if (PINCER_SANITIZED) GTEST_SKIP() << "the sanitizers' own memory is touched as well";
+  Wall wall(20, 10, 0);
+  const ScratchHandle scratch = makeScratch(wall.model);
+  const auto faults = [] {
+    rusage usage{};
+    getrusage(RUSAGE_THREAD, &usage);
+    return usage.ru_minflt;
+  };
+  const long before = faults();
+  for (int n = 0; n < 2; ++n) step(wall.model, wall.state, *scratch);
+  EXPECT_LT(faults() - before, 100);  // of the stack, and of what the compiler's and Bullet's code touches once
 }
 
 // A brick that rattled between two others hit them ever sooner, 50 ns apart in the end: it cut the tick sixteen times,
@@ -134,7 +164,8 @@ TEST(Wall, ThatIsHitIsNotCutEverSoonerByBricksThatRattle) {
     int columns, rows;
     double speed;
   };
-  for (const Hit& hit : {Hit{2, 3, 10}, {4, 4, 10}, {4, 4, 20}, {4, 8, 10}}) {
+  // less than a heap (budget.h), in which nothing is swept at such speeds
+  for (const Hit& hit : {Hit{2, 3, 10}, {2, 3, 20}, {2, 4, 10}, {3, 3, 20}}) {
     Wall wall({.columns = hit.columns, .rows = hit.rows, .hit_speed = hit.speed}, {});
     const ScratchHandle scratch = makeScratch(wall.model);
     int most_parts = 0;
