@@ -75,7 +75,7 @@ class FewSearch {
     }
     if ((isEnough(options) && !isSqueezedNow()) || giveWay(options, most)) return SolveMethod::kNewton;
     if (options.effort != SolverEffort::kAll || isSqueezedNow() || isSpent()) return SolveMethod::kNotConverged;
-    if (!is_small && goOnFromInside(options)) return SolveMethod::kInteriorPoint;
+    if (!is_small && (goOnFromInside(options) || giveWay(options, most))) return SolveMethod::kInteriorPoint;
     if (problem_.contactCount() > kAffordableContacts || isSpent()) return SolveMethod::kNotConverged;
     return sweepOn(options) ? SolveMethod::kSweeps : SolveMethod::kNotConverged;
   }
