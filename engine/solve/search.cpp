@@ -175,10 +175,10 @@ class Search {
   // To where rounds succeed: what slides, or needn't be exact, by sweeps, as long as they get on; then by descents.
   void approach(ProximalRound& round) {
     double before = std::numeric_limits<double>::infinity();
-    const auto is_for_it = [&] {
+    const auto is_for_sweeps = [&] {
       return (isFar() && (slides() || isHit())) || (isWithinReachOfSweeps() && !isEnough());
     };
-    while (is_for_it() && best_.speed < pace().still_fading * before && !isSpent()) {
+    while (is_for_sweeps() && best_.speed < pace().still_fading * before && !isSpent()) {
       before = best_.speed;
       smooth();
     }
