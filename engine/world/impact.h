@@ -10,9 +10,9 @@
 // all flights to come T / (1 - e). A hit bounces if T is at least a sixteenth of a tick and all that would
 // follow lasts at least a tick; else it lands.
 //
-// Two bodies that cross a quarter of the thinner one's thickness within a tick are swept, whatever their
-// restitution: the middle of the tick doesn't show whether they meet. So are two that would after the solve, because
-// something else (a finger) pushes one of them.
+// Two bodies that cross a quarter of the thinner one's thickness within a tick, in a heap (budget.h) all of it, are
+// swept, whatever their restitution: the middle of the tick doesn't show whether they meet. So are two that would after
+// the solve, because something else (a finger) pushes one of them.
 //
 // Newton's law can add energy in oblique hits with friction (T. R. Kane, D. A. Levinson, Dynamics: Theory and
 // Applications, 1985, section 5.8), seen from what is hit: a racket that is driven may. Then e is lowered, by quarters,
