@@ -71,13 +71,16 @@ class Search {
 
  private:
   int rows() const { return problem_.rowCount(); }
-  int times() const { return scratch_.is_patient ? kPatient : 1; }
+  // Few contacts too, where the tolerance alone counts.
+  bool isPatient() const { return scratch_.is_patient || (isFew() && options_.accuracy == 0); }
+  bool isFew() const { return problem_.contactCount() <= kFewContacts; }
+  int times() const { return isPatient() ? kPatient : 1; }
   // At most so many, as far as the operations go; one at least.
   int stepsOf(int most) const {
-    const std::int64_t left = (scratch_.operations_left - std::max<std::int64_t>(0, last_operation_)) / step_cost_;
-    return static_cast<int>(std::clamp<std::int64_t>(left, 1, most));
+    return static_cast<int>(std::clamp<std::int64_t>(operationsLeft() / step_cost_, 1, most));
   }
-  bool isSpent() const { return scratch_.operations_left < std::max<std::int64_t>(0, last_operation_); }
+  std::int64_t operationsLeft() const { return scratch_.operations_left - std::max<std::int64_t>(0, last_operation_); }
+  bool isSpent() const { return operationsLeft() < 0; }
   bool isWithinTolerance() const { return error_.residual <= options_.tolerance; }
   // As good as what rests asks for.
   bool isExact() const {
@@ -90,7 +93,7 @@ class Search {
   double finest() const { return std::min(options_.accuracy, SolverOptions{}.accuracy); }
   // Error that is small enough [m/s].
   double limit() const {
-    if (problem_.contactCount() <= kFewContacts || options_.accuracy == 0) return restErrorOf(options_);
+    if (isFew() || options_.accuracy == 0) return restErrorOf(options_);
     return std::max(kShareOfSlip * slip_, std::clamp(kShareOfSlow * slip_, finest(), options_.accuracy));
   }
   // Of a round's own, at most [m/s].
@@ -172,7 +175,7 @@ class Search {
   bool isWithinReachOfSweeps() const { return limit() > kSwept * referenceSpeed(problem_); }
   const Pace& pace() const { return moves() ? kInMotion : kAtRest; }
 
-  // To where rounds succeed: what slides, or needn't be exact, by sweeps, as long as they get on; then by descents.
+  // To where rounds succeed: what slides, or needn't be exact, by sweeps, as long as they get on; then descents.
   void approach(ProximalRound& round) {
     double before = std::numeric_limits<double>::infinity();
     const auto is_for_sweeps = [&] {
@@ -185,8 +188,7 @@ class Search {
     if (isFar()) descend(round, kFirstDescent);
   }
 
-  // Rounds whose shift is that of their start, from the best iterate: they never
-  // fail, and come near from wherever they start.
+  // Rounds whose shift is that of their start, from the best iterate: they never fail, and come near from anywhere.
   void descend(ProximalRound& round, double epsilon) {
     result_.method = SolveMethod::kAlternation;
     for (int n = 0; n < kDescents && !isEnough() && !isSpent(); ++n) {
@@ -202,7 +204,6 @@ class Search {
     }
   }
 
-  // At the best iterate again.
   void restart() {
     std::copy(scratch_.best_r.data(), scratch_.best_r.data() + rows(), scratch_.centre.data());
     error_ = errorOf(problem_, scratch_.centre.data(), scratch_, scratch_.u.data());
@@ -218,7 +219,7 @@ class Search {
     look();
   }
 
-  // Rounds; after one that failed the other methods again, from where it failed.
+  // Rounds; after one that failed the other methods again.
   void proceed(ProximalRound& round) {
     double epsilon = std::clamp(kEpsilonOfError * error_.speed, 10 * kLeastEpsilon, kFirstEpsilon);
     double give = std::numeric_limits<double>::infinity();
@@ -238,7 +239,7 @@ class Search {
       recentre();
       if (give < pace().still_fading * last_give)
         patience = longest;
-      else if (epsilon == kLeastEpsilon || !(scratch_.is_patient || error_.speed < kAtRest.still_fading * last_error))
+      else if (epsilon == kLeastEpsilon || !(isPatient() || error_.speed < kAtRest.still_fading * last_error))
         --patience;
       if (patience == 0) {
         if (isEnough() || giveWay(give) || ++failures > kMostFailures * times()) return;
@@ -353,8 +354,7 @@ class Search {
 
   void sweep() {
     const double many = std::max(kMostAccuracies * finest(), std::min(limit(), options_.accuracy));
-    const double content = problem_.contactCount() <= kFewContacts ? limit() : many;
-    const double enough = std::max(content, options_.tolerance * referenceSpeed(problem_));
+    const double enough = std::max(isFew() ? limit() : many, options_.tolerance * referenceSpeed(problem_));
     respond(problem_, scratch_.best_r.data(), scratch_);
     error_ = respondedError(problem_, scratch_.best_r.data(), scratch_, scratch_.best_u.data());
     const SweptResult sweeps =
