@@ -54,11 +54,13 @@ class Search {
     std::copy(r, r + rows(), scratch_.centre.data());
     look();
     result_.start = error_.residual;
-    if (!(error_.residual <= 1)) {  // as a hit's in the tick after it: none at all leaves what asks for most
+    const bool squeezed = squeezes(scratch_.centre);
+    // A hit's impulses are no start for the tick after it: none at all leaves what asks for most.
+    if (!squeezed && !(error_.residual <= 1)) {
       letGo();
       look();
     }
-    if (squeezes(scratch_.centre)) {
+    if (squeezed) {
       goSoft();
     } else if (isEnough() && (isExact() || !isQuiet())) {
       result_.method = SolveMethod::kWarmStart;
@@ -219,15 +221,13 @@ class Search {
     look();
   }
 
-  // Rounds; after one that failed the other methods again.
   void proceed(ProximalRound& round) {
     double epsilon = std::clamp(kEpsilonOfError * error_.speed, 10 * kLeastEpsilon, kFirstEpsilon);
     double give = std::numeric_limits<double>::infinity();
     const int longest = kPatience * times();
     int patience = longest, failures = 0;
     while (!isEnough() && !isSpent()) {
-      const int before = result_.iterations;
-      const int most = kMostRoundSteps * (1 + failures);  // or the same rounds would fail again
+      const int before = result_.iterations, most = kMostRoundSteps * (1 + failures);  // or the same would fail again
       if (!round.solve(Shift::kFollows, {epsilon, left(), stepsOf(most)}, result_.iterations)) {
         epsilon = std::min(kMostEpsilon, pace().harder * epsilon);
         if (++failures > kMostFailures * times()) return;

@@ -164,13 +164,15 @@ TEST(Wall, ThatIsHitIsNotCutEverSoonerByBricksThatRattle) {
     int columns, rows;
     double speed;
   };
-  // less than a heap (budget.h), in which nothing is swept at such speeds
-  for (const Hit& hit : {Hit{2, 3, 10}, {2, 3, 20}, {2, 4, 10}, {3, 3, 20}}) {
+  for (const Hit& hit : {Hit{2, 3, 10}, {2, 3, 20}, {2, 4, 10}, {3, 3, 20}, {4, 4, 10}, {4, 4, 20}, {4, 8, 10}}) {
     Wall wall({.columns = hit.columns, .rows = hit.rows, .hit_speed = hit.speed}, {});
     const ScratchHandle scratch = makeScratch(wall.model);
     int most_parts = 0;
     for (int n = 0; n < 40; ++n) most_parts = std::max(most_parts, step(wall.model, wall.state, *scratch).parts);
-    EXPECT_GT(most_parts, 3) << hit.columns << " x " << hit.rows << ", " << hit.speed;  // each hit cuts it once
+    // each hit cuts it once, but in a heap (budget.h), in which nothing is swept at such speeds
+    if (hit.columns < 4) {
+      EXPECT_GT(most_parts, 3) << hit.columns << " x " << hit.rows << ", " << hit.speed;
+    }
     // 10 in the wall of 2 x 3: seven bodies with more pairs than that; rattling went on to the most, 16
     EXPECT_LE(most_parts, 12) << hit.columns << " x " << hit.rows << ", " << hit.speed;
   }
