@@ -15,6 +15,7 @@
 // between the corners, about e^2 k / 8 for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm
 // radius with edges of 5 mm sinks up to 0.16 mm deeper than its smooth surface.)
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -33,6 +34,23 @@ struct PairPoint {
 };
 
 constexpr int kMaxPairPoints = 8;  // of two convex solids, or of a solid on a support, up to four
+
+// A pair's points of the last tick, as far as the next one needs them; none: zero and 0.
+struct LastPoints {
+  Vec3 n_W = Vec3::Zero();  // normal of one of them
+  std::array<std::uint32_t, kMaxPairPoints> features{};
+  int count = 0;
+
+  void add(std::uint32_t feature) {
+    if (count < kMaxPairPoints) features[static_cast<std::size_t>(count++)] = feature;
+  }
+  bool had(std::uint32_t feature) const {
+    const auto end = features.begin() + count;
+    return std::find(features.begin(), end, feature) != end;
+  }
+  LastPoints flipped() const { return {-n_W, features, count}; }
+};
+
 struct PairPoints {
   std::array<PairPoint, kMaxPairPoints> points;
   int count = 0;
@@ -47,11 +65,12 @@ void preparePair(const Shape& a, const Shape& b);
 // the deepest, so that it is the same from tick to tick. Every two shapes are answered for, but two supports
 // (half-space, dish), which are both static, have no point. Convex pairs of one kind of shape, and two meshes, are
 // symmetric in a and b to round-off; all others exactly.
-// `last_n_W`: a normal of the pair's last points, or zero: where the search of two convex solids begins. It spares most
-// of the search where the pair has hardly moved; the answer depends on it by round-off only, whatever it is, but where
-// several ways out of an overlap are equally short. Allocates nothing; `cache` is memory only.
+// `last`: its normal, where it isn't zero, is where the search of two convex solids begins. It spares most of the
+// search where the pair has hardly moved; the answer depends on it by round-off only, whatever it is, but where several
+// ways out of an overlap are equally short. Of more points than are kept, those of its features stay for as long as no
+// other is much better (point_choice.h). Allocates nothing; `cache` is memory only.
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache,
-                   PairPoints& out, const Vec3& last_n_W = Vec3::Zero());
+                   PairPoints& out, const LastPoints& last = {});
 
 // Radius of the smallest sphere about the shape's own origin that holds it [m]; infinity for HalfSpace and Dish.
 double boundingRadius(const Shape& shape);

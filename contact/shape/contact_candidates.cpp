@@ -85,7 +85,7 @@ void ContactCandidates::add(const FoundPoint& point) {
   *place = point;
 }
 
-FoundPoints ContactCandidates::keepBest() {
+FoundPoints ContactCandidates::keepBest(const LastPoints& last) {
   FoundPoints out;
   if (refused_.phi > -kInfinity && !overlap()) add(refused_);
   constexpr std::int8_t kNone = -1, kTaken = -2;  // marks of places in the table
@@ -101,9 +101,11 @@ FoundPoints ContactCandidates::keepBest() {
     PINCER_ASSERT(isUnitIfFinite(at(i).n_W));
     out.points[static_cast<std::size_t>(out.count++)] = at(i);
   };
-  const auto comesFirst = [&](int i, int j) {  // deeper, or as deep with the smaller feature
-    return j < 0 || at(i).phi < at(j).phi - kSameGap ||
-           (at(i).phi < at(j).phi + kSameGap && at(i).feature < at(j).feature);
+  const auto favour = [&](int i) { return last.had(at(i).feature) ? kStays : 1; };
+  const auto comesFirst = [&](int i, int j) {  // deeper, or as deep and there before, or with the smaller feature
+    if (j < 0 || at(i).phi < at(j).phi - kSameGap) return true;
+    if (!(at(i).phi < at(j).phi + kSameGap)) return false;
+    return favour(i) != favour(j) ? favour(i) > favour(j) : at(i).feature < at(j).feature;
   };
   while (group_count < kMaxPairPoints) {
     int leader = -1;
@@ -125,7 +127,8 @@ FoundPoints ContactCandidates::keepBest() {
     for (int i = 0; i < count_; ++i) {
       if (group_of[static_cast<std::size_t>(i)] != g) continue;
       const double d = group.outside(at(i).p_W);
-      const double score = d > kSameGap ? d * d / (kSameGap + std::max(0.0, at(i).phi - group.kept[0]->phi)) : 0;
+      const double score =
+          d > kSameGap ? favour(i) * d * d / (kSameGap + std::max(0.0, at(i).phi - group.kept[0]->phi)) : 0;
       const bool wins =
           score > kBetter * best || (next >= 0 && score * kBetter > best && at(i).feature < at(next).feature);
       if (score > 0 && wins) best = score, next = i;

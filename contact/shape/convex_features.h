@@ -13,8 +13,8 @@
 //
 // All in the solid's own frame. A round rim enters facets as kRimCorners points, the first in the direction of d: exact
 // for tilting and rolling; between them the outline runs up to 2 % of the radius inside of the circle, but for where
-// addRimCorner adds one. A rim whose disc faces along d to within 1e-6 rad has no first direction but noise: there the
-// corners are fixed in the body, the first at +x. Shapes that aren't convex (half-space, dish, mesh) have no features:
+// addRimCorner adds one. Where no point of the rim is further along d than the others by kSameGap, noise would be all
+// that says which is the first: there the corners are fixed in the body, the first at +x. Shapes that aren't convex (half-space, dish, mesh) have no features:
 // isConvex is false, and the functions must not be called.
 #pragma once
 #include <array>
@@ -22,6 +22,7 @@
 
 #include "pincer/contact/math.h"
 #include "pincer/contact/shape.h"
+#include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 
@@ -67,6 +68,12 @@ struct Strata {
     if (edge_count < kMost) edges[static_cast<std::size_t>(edge_count++)] = e;
   }
 };
+
+// The first corner of a rim, about its axis z; d of a unit vector.
+inline Vec2 startOfRim(double radius, const Vec2& d) {
+  const double tilt = d.norm();
+  return 2 * radius * tilt > kSameGap ? Vec2(radius / tilt * d) : Vec2(radius, 0);
+}
 
 bool isConvex(const Shape& shape);
 double roundingOf(const Shape& shape);

@@ -53,11 +53,13 @@ bool areApart(const PosedSolid& a, const PosedSolid& b, double reach) {
 }
 
 // Both posed about the same origin.
-void collidePosed(const PosedSolid& A, const PosedSolid& B, double margin, const Vec3& last_n, PairPoints& out) {
+void collidePosed(const PosedSolid& A, const PosedSolid& B, double margin, const LastPoints& last, PairPoints& out) {
   out.count = 0;
   const double size = std::min(boundingRadius(A.shape), boundingRadius(B.shape)),
                reach = margin + roundingOf(A) + roundingOf(B);
-  const auto finish = [&](const Separation& s) { return s.gap < reach && overlapFacets(A, B, s, size, margin, out); };
+  const auto finish = [&](const Separation& s) {
+    return s.gap < reach && overlapFacets(A, B, s, size, margin, last, out);
+  };
   if (std::holds_alternative<Capsule>(A.shape) && std::holds_alternative<Capsule>(B.shape)) {
     finish(separateCapsules(A, B));
     return;
@@ -66,35 +68,35 @@ void collidePosed(const PosedSolid& A, const PosedSolid& B, double margin, const
     const Separation s = separateBoxes(A, B);
     // Apart, the nearest may be two corners, or a corner and an edge: none of the 15 directions.
     if (!(s.gap < reach) || finish(s) || s.gap < 0) return;
-  } else if (last_n == Vec3::Zero() && areApart(A, B, reach)) {
+  } else if (last.n_W == Vec3::Zero() && areApart(A, B, reach)) {
     return;
   }
-  finish(separate(A, B, size, reach, last_n));
+  finish(separate(A, B, size, reach, last.n_W));
 }
 
 }  // namespace
 
 void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
-                   const Vec3& last_n_W, PairPoints& out) {
+                   const LastPoints& last, PairPoints& out) {
   out.count = 0;
   PINCER_ASSERT(isConvex(a) && isConvex(b) && a.index() <= b.index());
   const double furthest = boundingRadius(a) + boundingRadius(b) + margin;
   const Vec3 p_BA = X_WA.p - X_WB.p;
   if (!(p_BA.squaredNorm() < furthest * furthest)) return;
-  collidePosed({a, X_WA.q.toRotationMatrix(), 0.5 * p_BA}, {b, X_WB.q.toRotationMatrix(), -0.5 * p_BA}, margin,
-               last_n_W, out);
+  collidePosed({a, X_WA.q.toRotationMatrix(), 0.5 * p_BA}, {b, X_WB.q.toRotationMatrix(), -0.5 * p_BA}, margin, last,
+               out);
   for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * (X_WA.p + X_WB.p);
 }
 
 void collidePadWithConvex(const Shape& core, double rounding, const Pose& X_BF, const Shape& body, double margin,
-                          const Vec3& last_n_B, PairPoints& out) {
+                          const LastPoints& last, PairPoints& out) {
   PINCER_ASSERT(isConvex(core) && isConvex(body) && rounding >= 0);
   // Half of the way each from the origin in between, as two bodies are: round-off is theirs alike.
   const PosedSolid pad{core, X_BF.q.toRotationMatrix(), 0.5 * X_BF.p, rounding},
       solid{body, Mat3::Identity(), -0.5 * X_BF.p};
   const double size = std::min(boundingRadius(core), boundingRadius(body));
-  if (last_n_B == Vec3::Zero() || !touchOnFaces(pad, solid, last_n_B, size, margin, out))
-    collidePosed(pad, solid, margin, last_n_B, out);
+  if (last.n_W == Vec3::Zero() || !touchOnFaces(pad, solid, last, size, margin, out))
+    collidePosed(pad, solid, margin, last, out);
   for (int i = 0; i < out.count; ++i) out.points[static_cast<std::size_t>(i)].p_W += 0.5 * X_BF.p;
 }
 

@@ -6,12 +6,12 @@ namespace pincer::contact {
 
 // As collideShapes (pair_query.h), for shapes that are both convex. Allocates nothing.
 void collideConvex(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin,
-                   const Vec3& last_n_W, PairPoints& out);
+                   const LastPoints& last, PairPoints& out);
 
 // Of a fingertip that is the convex `core` at X_BF with a ball of radius `rounding` >= 0 [m] about it,
-// with the convex `body`: points in the body's frame B, normals out of the body. `last_n_B` as
-// last_n_W of collideShapes. Allocates nothing.
+// with the convex `body`: points in the body's frame B, normals out of the body. `last` as
+// that of collideShapes, in B. Allocates nothing.
 void collidePadWithConvex(const Shape& core, double rounding, const Pose& X_BF, const Shape& body, double margin,
-                          const Vec3& last_n_B, PairPoints& out);
+                          const LastPoints& last, PairPoints& out);
 
 }  // namespace pincer::contact

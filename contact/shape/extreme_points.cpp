@@ -1,7 +1,7 @@
 #include "pincer/contact/shape/extreme_points.h"
 
 #include "pincer/contact/polytope.h"
-#include "pincer/contact/shape/tolerances.h"
+#include "pincer/contact/shape/convex_features.h"
 #include "pincer/contact/smooth_mesh.h"
 
 namespace pincer::contact {
@@ -10,11 +10,6 @@ namespace {
 ExtremePoints stored(const ExtremePointStore& store, double rounding = 0) {
   const auto count = static_cast<std::size_t>(store.count);
   return {{store.points.data(), count}, {store.features.data(), count}, rounding};
-}
-
-Vec2 firstOfRim(const Vec2& steepest) {
-  const double rate = steepest.norm();
-  return rate > kNoAngle ? Vec2(steepest / rate) : Vec2::UnitX();
 }
 
 // Four points of the rim at height z, but none with x > x_most.
@@ -45,7 +40,7 @@ ExtremePoints pointsOf(const Box& box, const Vec2&, ExtremePointStore& store) {
 }
 
 ExtremePoints pointsOf(const Cylinder& cylinder, const Vec2& steepest, ExtremePointStore& store) {
-  const Vec2 first = cylinder.radius * firstOfRim(steepest);
+  const Vec2 first = startOfRim(cylinder.radius, steepest);
   const double everywhere = 2 * cylinder.radius;
   addRim(first, cylinder.half_length, everywhere, 0, store);
   addRim(first, -cylinder.half_length, everywhere, 4, store);
@@ -55,7 +50,7 @@ ExtremePoints pointsOf(const Cylinder& cylinder, const Vec2& steepest, ExtremePo
 ExtremePoints pointsOf(const CylinderWithFlat& cylinder, const Vec2& steepest, ExtremePointStore& store) {
   const double h = cylinder.half_length;
   const double d = cylinder.flat_distance;
-  const Vec2 first = cylinder.radius * firstOfRim(steepest);
+  const Vec2 first = startOfRim(cylinder.radius, steepest);
   addRim(first, h, d, 0, store);
   addRim(first, -h, d, 4, store);
   const double w = std::sqrt((cylinder.radius - d) * (cylinder.radius + d));

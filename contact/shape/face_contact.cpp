@@ -132,14 +132,14 @@ class OverFace {
 
 }  // namespace
 
-bool touchOnFaces(const PosedSolid& a, const PosedSolid& b, const Vec3& last_n, double size, double margin,
+bool touchOnFaces(const PosedSolid& a, const PosedSolid& b, const LastPoints& last, double size, double margin,
                   PairPoints& out) {
-  PINCER_ASSERT(isUnitIfFinite(last_n) && size > 0);
+  PINCER_ASSERT(isUnitIfFinite(last.n_W) && size > 0);
   for (const bool is_base_a : {false, true}) {
     out.count = 0;
     const PosedSolid& base_solid = is_base_a ? a : b;
     Facet base;
-    facetOf(base_solid.shape, base_solid.inwards(is_base_a ? Vec3(-last_n) : last_n), base);
+    facetOf(base_solid.shape, base_solid.inwards(is_base_a ? Vec3(-last.n_W) : last.n_W), base);
     if (base.count < 3) continue;
     const OverFace over(base_solid, base, is_base_a ? b : a);
     const bool is_nearest = over.isNearest(size);
@@ -149,7 +149,7 @@ bool touchOnFaces(const PosedSolid& a, const PosedSolid& b, const Vec3& last_n, 
       return true;
     }
     const Vec3 n = is_base_a ? Vec3(-over.normal()) : over.normal();
-    if (overlapFacets(a, b, {n, over.lowest()}, size, margin, out)) return true;
+    if (overlapFacets(a, b, {n, over.lowest()}, size, margin, last, out)) return true;
   }
   return false;
 }

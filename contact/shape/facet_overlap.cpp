@@ -278,12 +278,20 @@ struct Heights {
   }
 };
 
+// True of a polygon of `solid` of which no place is further along d_W than the others.
+bool isLevel(const PosedSolid& solid, const Facet& polygon, const Vec3& d_W, double size) {
+  return polygon.count > 2 && polygon.n.cross(solid.inwards(d_W)).norm() * size <= kSameGap;
+}
+
 // Where what faces the end of a cylinder comes near the rim between two of its corners, one more is added.
-void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& faced, const Vec3& d_W, Facet& end) {
+void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& faced, const Vec3& d_W, double size,
+              Facet& end) {
   if (!(end.rim_radius > 0)) return;
   const auto seen = [&](const Vec3& p) -> Vec2 { return cylinder.inwards(p - cylinder.p).head<2>(); };
-  const Vec2 furthest = seen(other.support(d_W));
-  if (furthest.norm() < end.rim_radius) addRimCorner(furthest, end);
+  if (!isLevel(other, faced, d_W, size)) {
+    const Vec2 furthest = seen(other.support(d_W));
+    if (furthest.norm() < end.rim_radius) addRimCorner(furthest, end);
+  }
   if (faced.rim_radius > 0) return addRimCorner(seen(other.p), end);
   Vec2 nearest = Vec2::Constant(kInfinity);
   for (int i = 0; i < faced.count; ++i) {
@@ -299,7 +307,7 @@ void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& 
 }  // namespace
 
 bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin,
-                   PairPoints& out) {
+                   const LastPoints& last, PairPoints& out) {
   const Vec3& n = along.n;
   PINCER_ASSERT(isUnitIfFinite(n));
   PINCER_ASSERT(size > 0);
@@ -307,8 +315,8 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   Facet facet_a, facet_b;
   facetOf(a.shape, a.inwards(-n), facet_a);
   facetOf(b.shape, b.inwards(n), facet_b);
-  reachOut(a, b, facet_b, n, facet_a);
-  reachOut(b, a, facet_a, -n, facet_b);
+  reachOut(a, b, facet_b, n, size, facet_a);
+  reachOut(b, a, facet_a, -n, size, facet_b);
   FlatFacet fa, fb;
   flatten(a, facet_a, -1, view, kCornerOfA, size, fa);
   flatten(b, facet_b, 1, view, kCornerOfB, size, fb);
@@ -346,7 +354,7 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   const auto count = static_cast<std::size_t>(shared.count);
   const KnownGaps support(points.data(), gaps.data(), n);
   const ExtremePoints candidates{{points.data(), count}, {features.data(), count}, 0};
-  const PointChoice choice(candidates, support, margin);
+  const PointChoice choice(candidates, support, margin, last);
   out.count = 0;
   for (int k = 0; k < choice.count(); ++k) {
     const auto [i, phi] = choice[k];

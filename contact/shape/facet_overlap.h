@@ -8,12 +8,12 @@
 //
 // where z is the plane of a polygon, and over a line of a round wall (capsules, cylinders) the wall itself: all points
 // lie on both surfaces. This holds face on face, edge on face, edge on edge and corner on face alike; nothing is
-// remembered from tick to tick. Two walls side by side whose lines cross at a small angle touch at the crossing, and
-// near the ends of what they share, there where one is as steep as the other. The end of a cylinder is a polygon of 16
-// corners, with more where the other body comes near the rim between two of them. Of more than four points up to four
-// are kept (point_choice.h). A point's feature is made of the names of corners and edges (convex_features.h), so it
-// stays while these touch. A corner of A counts as within B's facet up to kSamePlace of the size outside of it: so the
-// corners of equal boxes on each other keep their names.
+// remembered from tick to tick but which points were kept. Two walls side by side whose lines cross at a small angle
+// touch at the crossing, and near the ends of what they share, there where one is as steep as the other. The end of a
+// cylinder is a polygon of 16 corners, with more where the other body comes near the rim between two of them. Of more
+// than four points up to four are kept (point_choice.h). A point's feature is made of the names of corners and edges
+// (convex_features.h), so it stays while these touch. A corner of A counts as within B's facet up to kSamePlace of the
+// size outside of it: so the corners of equal boxes on each other keep their names.
 #pragma once
 #include "pincer/contact/pair_query.h"
 #include "pincer/contact/shape/separation.h"
@@ -30,6 +30,6 @@ constexpr std::uint32_t featureOfCorner(bool is_of_a, std::uint32_t vertex) {
 // False where the facets share no place whose gap is along.gap, so that the direction isn't one of least overlap; `out`
 // has the nearest points of the two along it all the same.
 bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& along, double size, double margin,
-                   PairPoints& out);
+                   const LastPoints& last, PairPoints& out);
 
 }  // namespace pincer::contact

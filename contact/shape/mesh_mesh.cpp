@@ -179,7 +179,8 @@ class MeshOnMesh {
 
 }  // namespace
 
-void collideMeshes(const Mesh& a, const Pose& X_WA, const Mesh& b, const Pose& X_WB, double margin, PairPoints& out) {
+void collideMeshes(const Mesh& a, const Pose& X_WA, const Mesh& b, const Pose& X_WB, double margin,
+                   const LastPoints& last, PairPoints& out) {
   out.count = 0;
   const double radius_a = a.surface->boundingRadius(), radius_b = b.surface->boundingRadius();
   const double furthest = radius_a + radius_b + margin;
@@ -187,7 +188,7 @@ void collideMeshes(const Mesh& a, const Pose& X_WA, const Mesh& b, const Pose& X
   const Pose X_AB{X_WA.q.conjugate() * X_WB.q, X_WA.q.conjugate() * (X_WB.p - X_WA.p)};
   MeshOnMesh search(a, b, X_AB, {std::min(radius_a, radius_b), margin});
   search.find();
-  search.candidates().keepBest().place(X_WA, out);
+  search.candidates().keepBest(last).place(X_WA, out);
 }
 
 }  // namespace pincer::contact

@@ -15,6 +15,7 @@
 namespace pincer::contact {
 
 // As collideShapes (pair_query.h); n out of b towards a, both poses in W. Allocates nothing.
-void collideMeshes(const Mesh& a, const Pose& X_WA, const Mesh& b, const Pose& X_WB, double margin, PairPoints& out);
+void collideMeshes(const Mesh& a, const Pose& X_WA, const Mesh& b, const Pose& X_WB, double margin,
+                   const LastPoints& last, PairPoints& out);
 
 }  // namespace pincer::contact

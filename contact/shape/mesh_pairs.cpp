@@ -207,7 +207,7 @@ class MeshOnSolid {
 }  // namespace
 
 void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin,
-                           PatchCache& cache, PairPoints& out) {
+                           const LastPoints& last, PatchCache& cache, PairPoints& out) {
   out.count = 0;
   const double radius_a = mesh.surface->boundingRadius(), radius_b = boundingRadius(solid);
   const double furthest = radius_a + radius_b + margin;
@@ -217,7 +217,7 @@ void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& soli
   const double size = std::min(radius_a, radius_b), bulge = mesh.surface->bulge();
   MeshOnSolid search(mesh, posed, {size, margin + bulge});
   search.find();
-  FoundPoints points = search.candidates().keepBest();
+  FoundPoints points = search.candidates().keepBest(last);
   if (bulge > 0) leadToSurface(mesh.surface->net(), cache, posed, size, margin, points);
   points.place(X_WA, out);
 }

@@ -28,7 +28,7 @@ namespace pincer::contact {
 
 // As collideShapes (pair_query.h); n out of the solid (b) towards the mesh (a), both poses in W. Allocates nothing.
 void collideMeshWithConvex(const Mesh& mesh, const Pose& X_WA, const Shape& solid, const Pose& X_WB, double margin,
-                           PatchCache& cache, PairPoints& out);
+                           const LastPoints& last, PatchCache& cache, PairPoints& out);
 
 // Of a fingertip that is the convex `core` at X_BF with a ball of radius `rounding` >= 0 [m] about it,
 // with the mesh's flat triangles: points in the mesh's frame B, normals out of the mesh. Allocates

@@ -24,7 +24,7 @@ void capsuleOnShape(const CapsuleTip& capsule, const Pose& X_BF, const Shape& bo
   if (std::holds_alternative<Sphere>(body) || !isConvex(body)) return;
   const double half = capsule.half_F.norm();
   const Pose X_BK{X_BF.q * Quat(frameFromNormal(capsule.half_F / half)), X_BF.p};
-  collidePadWithConvex(Capsule{capsule.radius, half}, 0, X_BK, body, margin, last_n_B, out);
+  collidePadWithConvex(Capsule{capsule.radius, half}, 0, X_BK, body, margin, {last_n_B}, out);
 }
 
 void padOnShape(const PadTip& pad, const Pose& X_BF, const Shape& body, double margin, const Vec3& last_n_B,
@@ -32,7 +32,7 @@ void padOnShape(const PadTip& pad, const Pose& X_BF, const Shape& body, double m
   out.count = 0;
   const Shape core = Convex{pad.hull};
   if (std::holds_alternative<Sphere>(body)) return;
-  if (isConvex(body)) return collidePadWithConvex(core, pad.rounding, X_BF, body, margin, last_n_B, out);
+  if (isConvex(body)) return collidePadWithConvex(core, pad.rounding, X_BF, body, margin, {last_n_B}, out);
   if (const auto* mesh = std::get_if<Mesh>(&body))
     return collidePadWithMesh(core, pad.rounding, X_BF, *mesh, margin, out);
   if (const auto* dish = std::get_if<Dish>(&body)) {

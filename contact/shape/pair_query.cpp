@@ -44,12 +44,12 @@ void addPoint(const PairPoint& point, PairPoints& out) {
 // n out of the support.
 template <class Support>
 void collideWithSupport(const Shape& solid, const SolidFrame& A, const Support& support, double margin,
-                        PairPoints& out) {
+                        const LastPoints& last, PairPoints& out) {
   // the others have 12 points at most
   if (isMesh(solid) && !(support.gap(Vec3::Zero()) - boundingRadius(solid) < margin)) return;
   ExtremePointStore store;
   const ExtremePoints extreme = extremePoints(solid, support.steepest(), store);
-  const PointChoice choice(extreme, support, margin);
+  const PointChoice choice(extreme, support, margin, last);
   for (int k = 0; k < choice.count(); ++k) {
     const auto [i, phi] = choice[k];
     const Vec3 n_W = support.normalInWorld(extreme.points[i], A);
@@ -59,11 +59,11 @@ void collideWithSupport(const Shape& solid, const SolidFrame& A, const Support& 
 }
 
 void collideWithSupport(const Shape& solid, const Pose& X_WA, const Shape& support, const Pose& X_WB, double margin,
-                        PairPoints& out) {
+                        const LastPoints& last, PairPoints& out) {
   const SolidFrame A(X_WA);
   if (const auto* dish = std::get_if<Dish>(&support))
-    return collideWithSupport(solid, A, BowlSupport(*dish, X_WB, A), margin, out);
-  collideWithSupport(solid, A, PlaneSupport(HalfSpace{}, X_WB, A), margin, out);
+    return collideWithSupport(solid, A, BowlSupport(*dish, X_WB, A), margin, last, out);
+  collideWithSupport(solid, A, PlaneSupport(HalfSpace{}, X_WB, A), margin, last, out);
 }
 
 // Two spheres, and a sphere on a half-space, in the world: heaps of them are all that some scenes are. n out of b.
@@ -115,19 +115,19 @@ void preparePair(const Shape& a, const Shape& b) {
 }
 
 void collideShapes(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_WB, double margin, PatchCache& cache,
-                   PairPoints& out, const Vec3& last_n_W) {
+                   PairPoints& out, const LastPoints& last) {
   out.count = 0;
   if (isSupport(a) && isSupport(b)) return;
   PINCER_ASSERT(isUnitIfFinite(X_WA.q) && isUnitIfFinite(X_WB.q));
   PINCER_ASSERT(!(margin < 0));
   if (isSphere(a)) return collideSphere(std::get<Sphere>(a), X_WA, b, X_WB, margin, cache, out);
   if (isConvex(a) && isConvex(b) && !isSphere(b) && a.index() <= b.index())
-    return collideConvex(a, X_WA, b, X_WB, margin, last_n_W, out);
+    return collideConvex(a, X_WA, b, X_WB, margin, last, out);
   if (isMesh(a) && isConvex(b) && !isSphere(b))
-    return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, cache, out);
-  if (isMesh(a) && isMesh(b)) return collideMeshes(std::get<Mesh>(a), X_WA, std::get<Mesh>(b), X_WB, margin, out);
-  if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, out);
-  collideShapes(b, X_WB, a, X_WA, margin, cache, out, -last_n_W);
+    return collideMeshWithConvex(std::get<Mesh>(a), X_WA, b, X_WB, margin, last, cache, out);
+  if (isMesh(a) && isMesh(b)) return collideMeshes(std::get<Mesh>(a), X_WA, std::get<Mesh>(b), X_WB, margin, last, out);
+  if (isSupport(b)) return collideWithSupport(a, X_WA, b, X_WB, margin, last, out);
+  collideShapes(b, X_WB, a, X_WA, margin, cache, out, last.flipped());
   flip(out);
 }
 

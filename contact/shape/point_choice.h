@@ -13,8 +13,11 @@
 // these leave room. Among equally deep ones the widest spread wins. (Rejected: d - 2 g takes far, open corners in place
 // of near, carrying ones, and the body falls from one set of corners to the next for ever; d / (g + s) favours the low
 // side of a tilted face so much that its far side is missing when it lands. Six or eight points: meshes came to rest no
-// sooner, and the solver paid.) A score must be better by a hundredth to win over a smaller feature: the points of a
-// resting body don't change with round-off. Cost: one scan over all points and four over those within the margin, where
+// sooner, and the solver paid.) A score must be better by a hundredth to win over a smaller feature, and twice as good
+// to win over a point that was kept in the last tick, which is also the first among the deepest to within s: a body that
+// rests or rocks by less than s keeps its points, and so its impulses. (Without that a cube on a cube, whose faces share
+// eight corners, went from one four of them to another and back, which moved the gaps that chose them, for ever.) Cost:
+// one scan over all points and four over those within the margin, where
 //
 //   d <= |p - p_k| + s   for each chosen p_k: none is further than s outside an edge
 //
@@ -43,8 +46,8 @@ struct Chosen {
 template <class Support>
 class PointChoice {
  public:
-  PointChoice(const ExtremePoints& solid, const Support& support, double margin)
-      : solid_(solid), support_(support), margin_(margin) {
+  PointChoice(const ExtremePoints& solid, const Support& support, double margin, const LastPoints& last)
+      : solid_(solid), support_(support), margin_(margin), last_(last) {
     listNear();
     near_count_ <= kMaxChosen ? keepAll() : keepBest();
   }
@@ -57,6 +60,7 @@ class PointChoice {
 
   struct Near : Chosen {
     double reach2;  // no less than the square of d [m^2]
+    double favour;  // times its score
   };
 
   // From a chosen point to another, none to the right of it; two points have two edges, there and back.
@@ -69,6 +73,7 @@ class PointChoice {
   static constexpr int kMaxEdges = (kMaxChosen - 1) * (kMaxChosen - 2);  // between all but the last, there and back
 
   double gapOf(int i) const { return support_.gap(solid_.points[i]) - solid_.rounding; }
+  Near near(int i, double gap) const { return {{i, gap}, kInfinity, last_.had(solid_.featureOf(i)) ? kStays : 1}; }
   int candidates() const { return static_cast<int>(solid_.points.size()); }
   const Vec3& chosenPoint(int i) const { return solid_.points[chosen_[i].index]; }
   template <class Predicate>
@@ -90,7 +95,7 @@ class PointChoice {
       if (!may_be_near(solid_.points[i])) continue;
       const double gap = gapOf(i);
       if (!(gap < margin_)) continue;
-      if (near_count_ < kListed) near_[near_count_] = {{i, gap}, kInfinity};
+      if (near_count_ < kListed) near_[near_count_] = near(i, gap);
       ++near_count_;
       deepest_ = std::min(deepest_, gap);
     }
@@ -101,7 +106,7 @@ class PointChoice {
     if (near_count_ <= kListed)
       return static_cast<void>(std::for_each(near_.begin(), near_.begin() + near_count_, visit));
     for (int i = 0; i < candidates(); ++i) {
-      Near found{{i, gapOf(i)}, kInfinity};
+      Near found = near(i, gapOf(i));
       if (found.gap < margin_) visit(found);
     }
   }
@@ -119,9 +124,9 @@ class PointChoice {
   }
 
   void keepDeepest() {
-    Chosen first{-1, 0};
-    forEachNear([&](const Chosen& c) {
-      if (first.index < 0 && c.gap <= deepest_ + kSameGap) first = c;
+    Near first{{-1, 0}, 0, 0};
+    forEachNear([&](const Near& c) {
+      if (c.favour > first.favour && c.gap <= deepest_ + kSameGap) first = c;
     });
     PINCER_ASSERT(first.index >= 0);  // as many near ones as this is called for can't all be no number
     chosen_[count_++] = first;
@@ -135,7 +140,7 @@ class PointChoice {
     Chosen next{-1, 0};
     const Vec3 last = chosenPoint(count_ - 1);
     forEachNear([&](Near& c) {
-      const double higher = kSameGap + c.gap - deepest_;
+      const double higher = (kSameGap + c.gap - deepest_) / c.favour;
       if (!(c.reach2 > kBetter * best * higher)) return;
       const Vec3& p = solid_.points[c.index];
       c.reach2 = std::min(c.reach2, reachFrom((p - last).squaredNorm()));
@@ -186,7 +191,8 @@ class PointChoice {
 
   const ExtremePoints& solid_;
   const Support& support_;
-  double margin_;                                             // [m]
+  double margin_;  // [m]
+  const LastPoints& last_;
   double deepest_ = std::numeric_limits<double>::infinity();  // smallest gap [m]
   Vec3 n_A_ = Vec3::UnitZ();
   std::array<Chosen, kMaxChosen> chosen_{};

@@ -17,8 +17,8 @@ namespace {
 // The parameters of the search; docs/engine.md gives their reasons.
 constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
 constexpr double kEpsilonOfError = 1e3;               // the first is that times the start's error [s/m]
-constexpr double kMotion = 1e3, kSliding = 1e4;       // of the accuracy: slips of what isn't about to rest, and fast
-constexpr double kLeft = 0.1;                         // of what is enough: a round's own error
+constexpr double kSliding = 1e4;                      // of the accuracy: fast slips
+constexpr double kLeft = 0.1;                         // of what is enough, and of the error before: a round's own error
 constexpr double kFirstDescent = 1e-2;                // epsilon of descents, at most
 constexpr double kRough = 1e-2, kMostlyGive = 0.3;    // a descent's error, of its start's; a give, of its error
 constexpr int kDescents = 6, kMostDescentSteps = 30;  // at a time; of one
@@ -35,14 +35,12 @@ constexpr double kHitSpeed = 3e6;                       // of the accuracy: prob
 constexpr int kHitSolves = 6;                           // that share what a tick's hits may take
 constexpr int kPolishRounds = 3;                        // of what is quiet, on to round-off, by kPolishEpsilon
 constexpr double kPolishEpsilon = 1e-4, kQuiet = 1e-3;  // quiet: slip of what is about to rest, of the problem's speeds
+constexpr double kNear = 100;                           // of what is enough: a start that is nearer settles
 
-// How rounds follow each other. In motion what gains little is a loss; what is about to rest would stir on.
-struct Pace {
-  double easier, harder;  // times epsilon: after a round of a few steps, after one that failed
-  int easy_steps;
-  double still_fading, far;  // of an error or a give, from time to time; from which rounds rather fail [m/s]
-};
-constexpr Pace kAtRest{0.2, 5, 3, 0.7, 1e-3}, kInMotion{0.4, 10, 2, 0.5, 3e-4};
+// How rounds follow each other.
+constexpr double kEasier = 0.2, kHarder = 10;  // times epsilon: after a round of a few steps, after one that failed
+constexpr int kEasySteps = 2;
+constexpr double kStillFading = 0.7, kFar = 3e-4;  // of a give or an error before; from where rounds rather fail [m/s]
 
 class Search {
  public:
@@ -60,6 +58,8 @@ class Search {
       letGo();
       look();
     }
+    const auto centre = scratch_.centre.begin();
+    settles_ = error_.speed <= kNear * limit() || std::all_of(centre, centre + rows(), [](double x) { return x == 0; });
     if (squeezed) {
       goSoft();
     } else if (isEnough() && (isExact() || !isQuiet())) {
@@ -146,7 +146,7 @@ class Search {
     if (isEnough()) return polish(round);
     approach(round);
     proceed(round);
-    if (isEnough() && result_.give == 0 && isQuiet()) polish(round);
+    if (isEnough() && result_.give == 0 && isQuiet() && settles_) polish(round);
     conclude();
     // what is new has no impulse yet
     if (scratch_.operations_left < 0 && result_.method == SolveMethod::kNotConverged) return sweep();
@@ -171,11 +171,9 @@ class Search {
     look();
   }
 
-  bool isFar() const { return best_.speed > pace().far; }
-  bool moves() const { return options_.accuracy > 0 && slip_ > kMotion * options_.accuracy; }
+  bool isFar() const { return best_.speed > kFar; }
   bool slides() const { return options_.accuracy > 0 && slip_ > kSliding * finest(); }
   bool isWithinReachOfSweeps() const { return limit() > kSwept * referenceSpeed(problem_); }
-  const Pace& pace() const { return moves() ? kInMotion : kAtRest; }
 
   // To where rounds succeed: what slides, or needn't be exact, by sweeps, as long as they get on; then descents.
   void approach(ProximalRound& round) {
@@ -183,7 +181,7 @@ class Search {
     const auto is_for_sweeps = [&] {
       return (isFar() && (slides() || isHit())) || (isWithinReachOfSweeps() && !isEnough());
     };
-    while (is_for_sweeps() && best_.speed < pace().still_fading * before && !isSpent()) {
+    while (is_for_sweeps() && best_.speed < kStillFading * before && !isSpent()) {
       before = best_.speed;
       smooth();
     }
@@ -201,8 +199,8 @@ class Search {
       const double give = noteGive(epsilon);
       recentre();
       const bool is_soft = give > kMostlyGive * error_.speed;
-      if ((slides() || !is_soft) && !(best_.speed < pace().still_fading * before)) return;
-      if (is_soft && is_done) epsilon = std::max(kLeastEpsilon, pace().easier * epsilon);
+      if ((slides() || !is_soft) && !(best_.speed < kStillFading * before)) return;
+      if (is_soft && is_done) epsilon = std::max(kLeastEpsilon, kEasier * epsilon);
     }
   }
 
@@ -228,8 +226,9 @@ class Search {
     int patience = longest, failures = 0;
     while (!isEnough() && !isSpent()) {
       const int before = result_.iterations, most = kMostRoundSteps * (1 + failures);  // or the same would fail again
-      if (!round.solve(Shift::kFollows, {epsilon, left(), stepsOf(most)}, result_.iterations)) {
-        epsilon = std::min(kMostEpsilon, pace().harder * epsilon);
+      const double least = std::max(left(), kLeft * error_.speed);
+      if (!round.solve(Shift::kFollows, {epsilon, least, stepsOf(most)}, result_.iterations)) {
+        epsilon = std::min(kMostEpsilon, kHarder * epsilon);
         if (++failures > kMostFailures * times()) return;
         goAround(round, std::min(epsilon, kFirstDescent), failures);
         continue;
@@ -237,9 +236,9 @@ class Search {
       const double last_give = give, last_error = error_.speed;
       give = noteGive(epsilon);
       recentre();
-      if (give < pace().still_fading * last_give)
+      if (give < kStillFading * last_give)
         patience = longest;
-      else if (epsilon == kLeastEpsilon || !(isPatient() || error_.speed < kAtRest.still_fading * last_error))
+      else if (epsilon == kLeastEpsilon || !(isPatient() || error_.speed < kStillFading * last_error))
         --patience;
       if (patience == 0) {
         if (isEnough() || giveWay(give) || ++failures > kMostFailures * times()) return;
@@ -248,8 +247,8 @@ class Search {
         give = std::numeric_limits<double>::infinity();
         continue;
       }
-      if (result_.iterations - before <= pace().easy_steps || error_.speed > pace().still_fading * last_error)
-        epsilon = std::max(kLeastEpsilon, pace().easier * epsilon);
+      if (result_.iterations - before <= kEasySteps || error_.speed > kStillFading * last_error)
+        epsilon = std::max(kLeastEpsilon, kEasier * epsilon);
     }
   }
 
@@ -387,6 +386,7 @@ class Search {
   std::int64_t last_operation_ = 0, step_cost_ = 1;
   ContactError error_, best_;
   double slip_ = 0;
+  bool settles_ = false;  // the start is near, or none: else the next one will be as far off, whatever is done
   SolveResult result_;
 };
 

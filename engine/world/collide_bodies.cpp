@@ -28,13 +28,17 @@ double cornerSpeed(const BodyModel& body, const BodyScratch& s) {
   return body.corner_reach > 0 ? body.corner_reach * s.start.w_W.norm() : 0;
 }
 
-// Of the first contact that two shapes had in the last tick, whose contacts are numbered from `first` on; zero if they
-// had none.
-Vec3 lastNormal(const WorldState& state, std::uint64_t first) {
+// Of two shapes, whose contacts are numbered from `first` on.
+contact::LastPoints lastPoints(const WorldState& state, std::uint64_t first) {
   const auto end = state.contacts.begin() + state.contact_count;
   const auto less = [](const ContactMemory& m, std::uint64_t id) { return m.id < id; };
-  const auto found = std::lower_bound(state.contacts.begin(), end, first, less);
-  return found != end && found->id >> 32 == first >> 32 ? found->n_W : Vec3(Vec3::Zero());
+  contact::LastPoints last;
+  for (auto m = std::lower_bound(state.contacts.begin(), end, first, less); m != end && m->id >> 32 == first >> 32;
+       ++m) {
+    if (last.count == 0) last.n_W = m->n_W;
+    last.add(static_cast<std::uint32_t>(m->id));
+  }
+  return last;
 }
 
 void addPoints(const WorldModel& model, const ColliderModel& a, const ColliderModel& b, const Material& material,
@@ -53,21 +57,20 @@ void addPoints(const WorldModel& model, const ColliderModel& a, const ColliderMo
   }
 }
 
-// Of shapes at these places, but for the last normal, which is looked up. Spheres need none, and are asked for sooner
+// Of shapes at these places, but for the last points, which are looked up. Spheres need none, and are asked for sooner
 // than remembered.
 const contact::PairPoints& pointsOf(const WorldModel& model, const WorldState& state, const ColliderModel& a,
                                     const ColliderModel& b, PairPlace place, contact::PairPoints& found,
                                     WorldScratch& scratch) {
   const auto collide = [&](contact::PairPoints& points) {
-    contact::collideShapes(a.shape, place.X_WA, b.shape, place.X_WB, place.margin, scratch.patches, points,
-                           place.last_n_W);
+    contact::collideShapes(a.shape, place.X_WA, b.shape, place.X_WB, place.margin, scratch.patches, points, place.last);
   };
   if (isSphere(a) || isSphere(b)) {
     collide(found);
     return found;
   }
   const std::uint64_t first = contactId(model.shape_bits, sideOf(model, a), sideOf(model, b), 0);
-  place.last_n_W = lastNormal(state, first);
+  place.last = lastPoints(state, first);
   return scratch.found_pairs.pointsOf(first, place, collide);
 }
 
@@ -94,7 +97,7 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   };
   const std::size_t first = scratch.contacts.size();
   forEachNearShapes(model, a, sa.X_WB_mid, b, sb.X_WB_mid, margin, collide);
-  if (a.collider_count + b.collider_count > 2) thinContacts(first, scratch);
+  if (a.collider_count + b.collider_count > 2) thinContacts(state, first, scratch);
 }
 
 }  // namespace

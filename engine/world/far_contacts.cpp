@@ -10,17 +10,23 @@ namespace {
 
 constexpr double kFarTimes = 4;  // impulses of a hit pass on no more than twice its speed
 
+// Square of the fastest motion of any place of it, no less.
+double fastest2Of(const BodyModel& body, const BodyScratch& s) {
+  if (!body.dynamic && !body.driven) return 0;
+  const double reach = std::min(body.bounding_radius, 1e6);
+  return 2 * (std::max(s.free.v_W.squaredNorm(), s.start.v_W.squaredNorm()) + reach * reach * s.free.w_W.squaredNorm());
+}
+double fastest2Of(const PointScratch& point) { return 2 * point.free.v_W.squaredNorm(); }
+double fastest2Of(const WorldModel& model, const WorldScratch& scratch, const Side& side) {
+  if (side.kind == SideKind::kPoint) return fastest2Of(scratch.points[side.index]);
+  return fastest2Of(model.bodies[side.index], scratch.bodies[side.index]);
+}
+
 double fastestFree(const WorldModel& model, const WorldScratch& scratch) {
   double fastest2 = 0;
-  for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-    const BodyModel& body = model.bodies[i];
-    const BodyScratch& s = scratch.bodies[i];
-    if (!body.dynamic && !body.driven) continue;
-    const double reach = std::min(body.bounding_radius, 1e6);
-    fastest2 = std::max(fastest2, 2 * (std::max(s.free.v_W.squaredNorm(), s.start.v_W.squaredNorm()) +
-                                       reach * reach * s.free.w_W.squaredNorm()));
-  }
-  for (const PointScratch& point : scratch.points) fastest2 = std::max(fastest2, 2 * point.free.v_W.squaredNorm());
+  for (std::size_t i = 0; i < model.bodies.size(); ++i)
+    fastest2 = std::max(fastest2, fastest2Of(model.bodies[i], scratch.bodies[i]));
+  for (const PointScratch& point : scratch.points) fastest2 = std::max(fastest2, fastest2Of(point));
   return std::sqrt(fastest2);
 }
 
@@ -47,12 +53,16 @@ void markFarContacts(const WorldModel& model, WorldScratch& scratch) {
   if (!(scratch.h > 0)) return;
   const auto is_open = [](const Contact& c) { return c.bias_C[kNormalRow] > 0; };
   if (std::none_of(scratch.contacts.begin(), scratch.contacts.end(), is_open)) return;
-  const double limit = kFarTimes * fastestFree(model, scratch);
+  const double fastest = fastestFree(model, scratch);
+  const auto limitOf = [&](const Contact& c) {
+    const double own = std::sqrt(std::max(fastest2Of(model, scratch, c.a), fastest2Of(model, scratch, c.b)));
+    return std::max(fastest, kFarTimes * own);
+  };
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
     Contact& c = scratch.contacts[i];
-    c.far = c.bias_C[kNormalRow] > 0 &&
-            scratch.q[static_cast<std::size_t>(scratch.first_row[i] + kNormalRow)] > limit && !isJoined(model, c.a) &&
-            !isJoined(model, c.b);
+    const double opens = scratch.q[static_cast<std::size_t>(scratch.first_row[i] + kNormalRow)];
+    c.far = c.bias_C[kNormalRow] > 0 && opens > fastest && !isJoined(model, c.a) && !isJoined(model, c.b) &&
+            opens > limitOf(c);
     scratch.far_contacts += c.far;
   }
 }

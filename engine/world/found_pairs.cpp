@@ -11,7 +11,7 @@ FoundPairs::FoundPairs(int pairs) {
   pairs_.resize(entries_.size(), kNone);
 }
 
-bool FoundPairs::isSame(const std::array<double, 18>& a, const std::array<double, 18>& b) {
+bool FoundPairs::isSame(const PairPlace::Numbers& a, const PairPlace::Numbers& b) {
   return std::memcmp(a.data(), b.data(), sizeof a) == 0;
 }
 

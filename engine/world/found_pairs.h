@@ -4,6 +4,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "pincer/contact/pair_query.h"
@@ -14,13 +15,17 @@ namespace pincer::engine {
 struct PairPlace {
   Pose X_WA, X_WB;
   double margin = 0;  // [m]
-  Vec3 last_n_W = Vec3::Zero();
+  contact::LastPoints last{};
 
-  std::array<double, 18> numbers() const {
+  using Numbers = std::array<double, 22>;
+  Numbers numbers() const {
     const Quat &a = X_WA.q, &b = X_WB.q;
-    const Vec3 &p = X_WA.p, &o = X_WB.p, &n = last_n_W;
-    return {p.x(), p.y(), p.z(), a.w(), a.x(), a.y(), a.z(), o.x(), o.y(),
-            o.z(), b.w(), b.x(), b.y(), b.z(), n.x(), n.y(), n.z(), margin};
+    const Vec3 &p = X_WA.p, &o = X_WB.p, &n = last.n_W;
+    Numbers all{p.x(), p.y(), p.z(), a.w(), a.x(), a.y(), a.z(), o.x(), o.y(),
+                o.z(), b.w(), b.x(), b.y(), b.z(), n.x(), n.y(), n.z(), margin};
+    static_assert(sizeof last.features == 4 * sizeof(double));
+    std::memcpy(&all[18], last.features.data(), sizeof last.features);
+    return all;
   }
 };
 
@@ -35,7 +40,7 @@ class FoundPairs {
   const contact::PairPoints& pointsOf(std::uint64_t pair, const PairPlace& place, Find find) {
     const std::size_t n = placeOf(pair);
     Entry& entry = entries_[n];
-    const std::array<double, 18> numbers = place.numbers();
+    const PairPlace::Numbers numbers = place.numbers();
     if (pairs_[n] == pair && isSame(entry.numbers, numbers)) return entry.points;
     pairs_[n] = pair;
     entry.numbers = numbers;
@@ -47,11 +52,11 @@ class FoundPairs {
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
   static constexpr std::size_t kRow = 4;  // places for a pair: of one, a third of the pairs of a wall would share it
   struct Entry {
-    std::array<double, 18> numbers;
+    PairPlace::Numbers numbers;
     contact::PairPoints points;
   };
 
-  static bool isSame(const std::array<double, 18>& a, const std::array<double, 18>& b);  // by their bits
+  static bool isSame(const PairPlace::Numbers& a, const PairPlace::Numbers& b);  // by their bits
   // Where the pair is, or is to be: in its row, in the first place that is free, or in one that its number names.
   std::size_t placeOf(std::uint64_t pair) const;
 

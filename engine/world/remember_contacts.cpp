@@ -116,9 +116,9 @@ void alignOffsets(std::span<ContactMemory> face) {
   double turn = 0, spread = 0;
   for (const ContactMemory& m : face) {
     if (!sticks(m)) continue;
-    const Vec3 rho = m.arm_a_W - centre;
-    turn += m.n_W.dot(rho.cross(offset_W(m)));
-    spread += rho.squaredNorm();
+    const Vec3 way_W = m.n_W.cross(m.arm_a_W - centre);  // of a turn by 1; a face that tilts has places off its plane
+    turn += way_W.dot(offset_W(m));
+    spread += way_W.squaredNorm();
   }
   const double theta = spread > 0 ? turn / spread : 0;
   const auto fitted_W = [&](const ContactMemory& m) { return Vec3(d + theta * m.n_W.cross(m.arm_a_W - centre)); };

@@ -70,10 +70,17 @@ class PlanePoints {
   std::array<std::size_t, kMostThinned> index_;
 };
 
+bool isRemembered(const WorldState& state, std::uint64_t id) {
+  const auto less = [](const ContactMemory& m, std::uint64_t other) { return m.id < other; };
+  const auto end = state.contacts.begin() + state.contact_count;
+  const auto found = std::lower_bound(state.contacts.begin(), end, id, less);
+  return found != end && found->id == id;
+}
+
 enum class Fate : unsigned char { kOpen, kKept, kDropped };
 
 // Decides about the plane of the contact `leader` and of those behind it.
-void thinPlane(std::span<const Contact> contacts, std::size_t leader, std::span<Fate> fates) {
+void thinPlane(const WorldState& state, std::span<const Contact> contacts, std::size_t leader, std::span<Fate> fates) {
   PlanePoints plane(contacts[leader].n_W());
   for (std::size_t i = leader; i < contacts.size(); ++i) {
     if (fates[i] == Fate::kOpen && isInOnePlane(contacts[leader], contacts[i])) plane.add(i, contacts[i]);
@@ -84,20 +91,24 @@ void thinPlane(std::span<const Contact> contacts, std::size_t leader, std::span<
   if (few) return;
   plane.beginOutside();
   const contact::ExtremePoints points{plane.points(), {}, 0};
-  const contact::PointChoice<PlanePoints> choice(points, plane, std::numeric_limits<double>::infinity());
+  contact::LastPoints last;
+  for (std::uint32_t i = 0; i < plane.count(); ++i) {
+    if (isRemembered(state, contacts[plane.indexOf(static_cast<int>(i))].id)) last.add(i);
+  }
+  const contact::PointChoice<PlanePoints> choice(points, plane, std::numeric_limits<double>::infinity(), last);
   for (int i = 0; i < choice.count(); ++i) fates[plane.indexOf(choice[i].index)] = Fate::kKept;
 }
 
 }  // namespace
 
-void thinContacts(std::size_t first, WorldScratch& scratch) {
+void thinContacts(const WorldState& state, std::size_t first, WorldScratch& scratch) {
   std::vector<Contact>& all = scratch.contacts;
   if (scratch.contacts_dropped || all.size() <= first + contact::kMaxChosen || all.size() > first + kMostThinned)
     return;
   const std::span<const Contact> contacts(all.data() + first, all.size() - first);
   std::array<Fate, kMostThinned> fates{};
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    if (fates[i] == Fate::kOpen) thinPlane(contacts, i, fates);
+    if (fates[i] == Fate::kOpen) thinPlane(state, contacts, i, fates);
   }
   std::size_t kept = first;
   for (std::size_t i = first; i < all.size(); ++i) {

@@ -134,7 +134,7 @@ class ClosingPair {
     const auto look_at = [&](const ColliderModel& ca, const Pose& X_WA, const ColliderModel& cb, const Pose& X_WB) {
       contact::PairPoints found;
       chargeQuery(ca, cb, scratch_);
-      contact::collideShapes(ca.shape, X_WA, cb.shape, X_WB, margin_, scratch_.patches, found, last_n_W_);
+      contact::collideShapes(ca.shape, X_WA, cb.shape, X_WB, margin_, scratch_.patches, found, {last_n_W_});
       if (are_lone && found.count > 0) last_n_W_ = found.points[0].n_W;
       for (int i = 0; i < found.count; ++i) {
         const contact::PairPoint& point = found.points[i];

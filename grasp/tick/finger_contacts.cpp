@@ -39,7 +39,7 @@ class FingerLook {
       const Mat3 R_WS = mid.R_WB_mid * c.X_BS.q.toRotationMatrix();
       at({c, mid, p_WS, R_WS}, p_WS, c.bounding_radius);
     }
-    engine::thinContacts(first, scratch_.world);
+    engine::thinContacts(state_.world, first, scratch_.world);
   }
 
   // Distance of the finger's centre from a body's box, which holds the body's own way in the tick,

@@ -72,7 +72,7 @@ struct PairQuery {
   PairPoints found;
 
   const PairPoints& of(const Shape& a, const Pose& X_WA, const Shape& b, const Vec3& last_n_W, double margin) {
-    contact::collideShapes(a, X_WA, b, Pose{}, margin, *cache, found, last_n_W);
+    contact::collideShapes(a, X_WA, b, Pose{}, margin, *cache, found, {last_n_W});
     return found;
   }
 };

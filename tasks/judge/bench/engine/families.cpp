@@ -226,7 +226,7 @@ std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
   heap(
       "heaps/balls-100", [] { return ballWorld(100, 5, 1); }, 2);
   heap(
-      "heaps/discs-12", [] { return discWorld(12, 1); }, 2);
+      "heaps/discs-12", [] { return heapWorld(Falling::kDiscs, 12, 1); }, 2);
   heap(
       "hulls/50", [] { return hullWorld(50, 1); }, whole ? 3 : 1.5);
   for (const double accuracy : {1e-4, 1e-3, 1e-2})  // the dial
@@ -250,8 +250,13 @@ std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
   wall("3x8-masses-1e3", {.columns = 3, .rows = 8, .mass_ratio = 1e3}, 10);
   heap(
       "heaps/balls-400", [] { return ballWorld(400, 8, 1); }, 3);
-  heap(
-      "heaps/discs-50", [] { return discWorld(50, 1); }, 3);
+  for (const auto& [name, what] : {std::pair("discs", Falling::kDiscs),
+                                   {"capsules", Falling::kCapsules},
+                                   {"cans", Falling::kCans},
+                                   {"cubes", Falling::kCubes},
+                                   {"mixed", Falling::kMixed}})
+    heap(
+        fmt::format("heaps/{}-50", name), [what = what] { return heapWorld(what, 50, 1); }, 3);
   heap(
       "hulls/100", [] { return hullWorld(100, 1); }, 3);
   return all;

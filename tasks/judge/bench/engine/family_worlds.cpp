@@ -147,14 +147,27 @@ FamilyWorld hullWorld(int hulls, std::uint64_t seed) {
   return maker.make();
 }
 
-FamilyWorld discWorld(int discs, std::uint64_t seed) {
+namespace {
+
+contact::Shape shapeOf(Falling what, int i) {
+  constexpr Falling kByTurns[] = {Falling::kDiscs, Falling::kCapsules, Falling::kCans, Falling::kCubes};
+  if (what == Falling::kMixed) return i % 5 == 4 ? contact::Sphere{0.013} : shapeOf(kByTurns[i % 5], i);
+  if (what == Falling::kCapsules) return contact::Capsule{0.008, 0.009};
+  if (what == Falling::kCans) return contact::Cylinder{0.011, 0.012};
+  if (what == Falling::kCubes) return contact::Box{Vec3::Constant(0.01)};
+  return contact::Cylinder{0.016, 0.004};
+}
+
+}  // namespace
+
+FamilyWorld heapWorld(Falling what, int count, std::uint64_t seed) {
   Uniform uniform(seed);
   WorldMaker maker(0.5, false);
   maker.addCrate(0.06);
-  for (int i = 0; i < discs; ++i) {
+  for (int i = 0; i < count; ++i) {
     const Vec3 axis = uniform.direction();
     const Quat q = quatFromRotationVector(uniform(0, 3) * axis);
-    maker.add(fmt::format("disc{}", i), contact::Cylinder{0.016, 0.004}, 0.02, placeAbove(i) + uniform.within(2e-3), q);
+    maker.add(fmt::format("body{}", i), shapeOf(what, i), 0.02, placeAbove(i) + uniform.within(2e-3), q);
   }
   return maker.make();
 }

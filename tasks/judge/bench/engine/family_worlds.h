@@ -32,8 +32,10 @@ FamilyWorld wallWorld(const WallSpec& spec);
 // of nine into a box of 120 x 120 mm; mu 0.5.
 FamilyWorld hullWorld(int hulls, std::uint64_t seed);
 
-// Discs of 32 x 8 mm and 20 g, turned in any direction, fall in layers of nine into a box of 120 x 120 mm; mu 0.5.
-FamilyWorld discWorld(int discs, std::uint64_t seed);
+// Discs of 32 x 8 mm, capsules of 16 x 34 mm, cans of 22 x 24 mm, cubes of 20 mm, or balls of 26 mm and all of these by
+// turns; 20 g each, turned in any direction, fall in layers of nine into a box of 120 x 120 mm; mu 0.5.
+enum class Falling { kDiscs, kCapsules, kCans, kCubes, kMixed };
+FamilyWorld heapWorld(Falling what, int count, std::uint64_t seed);
 
 // Balls of 10 mm radius and 50 g fall into a box with room for `side` x `side` of them in a layer; mu 0.5.
 FamilyWorld ballWorld(int balls, int side, std::uint64_t seed);

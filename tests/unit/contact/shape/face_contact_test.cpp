@@ -101,10 +101,10 @@ TEST(FaceContact, SaysWhatTheSearchSays) {
       const auto [pad, body] =
           pose(under, about(axis, kTilts[static_cast<std::size_t>(n % 4)]) * about(Vec3(0, 0, 1), yaw), lift, aside);
       PairPoints quick, searched;
-      if (!touchOnFaces(pad, body, Vec3::UnitZ(), kSize, kPadMargin, quick)) continue;
+      if (!touchOnFaces(pad, body, {Vec3::UnitZ()}, kSize, kPadMargin, quick)) continue;
       ++known;
       const Separation found = separate(pad, body, kSize);
-      overlapFacets(pad, body, found, kSize, kPadMargin, searched);
+      overlapFacets(pad, body, found, kSize, kPadMargin, {}, searched);
       ASSERT_GT(quick.count, 0) << under.name << " " << n;
       EXPECT_NEAR(leastOf(quick), leastOf(searched), 1e-11) << under.name << " " << n;
       EXPECT_LT((quick.points[0].n_W - found.n).norm(), 1e-7) << under.name << " " << n;
@@ -120,9 +120,9 @@ TEST(FaceContact, DeclinesWhatItCannotKnow) {
   PairPoints points;
   const Under box = bodies()[0];
   const auto [deep, body] = pose(box, Quat::Identity(), -6e-4, Vec2::Zero());
-  EXPECT_FALSE(touchOnFaces(deep, body, Vec3::UnitZ(), 0.01, kPadMargin, points));
+  EXPECT_FALSE(touchOnFaces(deep, body, {Vec3::UnitZ()}, 0.01, kPadMargin, points));
   const auto [beside, other] = pose(box, Quat::Identity(), 0, Vec2(0.06, 0));
-  EXPECT_FALSE(touchOnFaces(beside, other, Vec3::UnitZ(), 0.01, kPadMargin, points));
+  EXPECT_FALSE(touchOnFaces(beside, other, {Vec3::UnitZ()}, 0.01, kPadMargin, points));
 }
 
 TEST(FaceContact, AllocatesNothing) {
@@ -130,7 +130,7 @@ TEST(FaceContact, AllocatesNothing) {
   const auto [pad, body] = pose(box, Quat::Identity(), 0, Vec2::Zero());
   PairPoints points;
   const std::int64_t before = tests::allocationCount();
-  EXPECT_TRUE(touchOnFaces(pad, body, Vec3::UnitZ(), 0.01, kPadMargin, points));
+  EXPECT_TRUE(touchOnFaces(pad, body, {Vec3::UnitZ()}, 0.01, kPadMargin, points));
   EXPECT_EQ(tests::allocationCount(), before);
   EXPECT_EQ(points.count, 4);
 }

@@ -58,7 +58,7 @@ bool areBoxes(const Shape& a, const Shape& b) {
 Vec3 normalOf(const Shape& a, const Pose& X_BA, const Shape& b, const Vec3& last, double margin = 1) {
   PatchCache cache(16);
   PairPoints out;
-  collideShapes(a, X_BA, b, Pose{}, margin, cache, out, last);
+  collideShapes(a, X_BA, b, Pose{}, margin, cache, out, {last});
   return out.count > 0 ? out.points[0].n_W : Vec3(Vec3::Zero());
 }
 

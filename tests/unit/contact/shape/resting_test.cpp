@@ -215,7 +215,8 @@ struct Ring {
 Features chosen(const Ring& ring, const Pose& X_WA) {
   const SolidFrame A(X_WA);
   const PlaneSupport ground(HalfSpace{}, Pose{}, A);
-  const PointChoice choice({ring.points, {}, 0}, ground, 0.05);
+  const LastPoints none;
+  const PointChoice choice({ring.points, {}, 0}, ground, 0.05, none);
   Features features;
   for (int i = 0; i < choice.count(); ++i) features.insert(static_cast<std::uint32_t>(choice[i].index));
   return features;
@@ -320,7 +321,8 @@ std::vector<Vec3> cloud(int count, std::mt19937& random) {
 
 template <class Support>
 void expectTheRule(const std::vector<Vec3>& points, const Support& support) {
-  const PointChoice choice({points, {}, 0}, support, kMargin);
+  const LastPoints none;
+  const PointChoice choice({points, {}, 0}, support, kMargin, none);
   std::vector<int> chosen;
   for (int k = 0; k < choice.count(); ++k) chosen.push_back(choice[k].index);
   EXPECT_EQ(chosen, chosenByRule(points, support)) << points.size() << " points";
