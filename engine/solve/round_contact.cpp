@@ -58,14 +58,14 @@ bool makeRound(std::span<const ContactSide> sides, RoundContact& c) {
 }  // namespace
 
 void findRoundContacts(std::vector<RoundContact>& round, ContactProblem& problem) {
-  int found = 0;
+  int others = 0;
   for (int i = 0; i < problem.contactCount(); ++i) {
     const auto place = static_cast<std::size_t>(i);
-    const bool is_round = problem.rows(i) == kTorsionRow && makeRound(problem.sidesOf(i), round[place]);
-    if (!is_round) round[place].inverse_W_tt = 0;
-    found += is_round;
+    if (problem.rows(i) == kTorsionRow && makeRound(problem.sidesOf(i), round[place])) continue;
+    round[place].inverse_W_tt = 0;
+    if (2 * ++others >= problem.contactCount()) return;
   }
-  if (2 * found > problem.contactCount()) problem.round = {round.data(), problem.mu.size()};
+  problem.round = {round.data(), problem.mu.size()};
 }
 
 }  // namespace pincer::engine

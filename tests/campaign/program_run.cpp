@@ -23,8 +23,6 @@ namespace {
 
 constexpr int kNotStarted = 125;  // exit code of a child that could not become the program
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 void limitTo(__rlimit_resource what, rlim_t most) {
   const rlimit limit{most, most};
   ::setrlimit(what, &limit);
@@ -150,6 +148,8 @@ std::string quoted(const std::string& text) {
 }
 
 }  // namespace
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 RunningProgram::RunningProgram(const Launch& launch) : launch_(launch), began_(now()) {
   std::filesystem::create_directories(launch.log);

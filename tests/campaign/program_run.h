@@ -36,6 +36,8 @@ struct Launch {
   bool owner_rights = false;      // without root's right to read and write everything
 };
 
+double now();  // of the steady clock [s]
+
 struct Ended {
   int exit_code = 0;     // if it ended by itself
   int signal = 0;        // that ended it; 0: none

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "pincer/devices/falcon/falcon_packet.h"
 #include "pincer/devices/usb/frame.h"
 #include "pincer/devices/usb/frame_order.h"
 #include "pincer/devices/usb/messages.h"
+#include "pincer/tests/campaign/program_run.h"
 #include "pincer/tests/campaign/rows.h"
 
 namespace pincer::campaign {
@@ -16,8 +16,6 @@ namespace {
 
 using namespace devices::usb;
 constexpr int kExecutions = 100'000;  // per case
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 constexpr FrameType kTypes[] = {
     FrameType::kIdentify,           FrameType::kArmCommand,  FrameType::kDisplayCommand, FrameType::kReadCalibration,
