@@ -11,11 +11,11 @@
 //   bendOf     the second derivative of h at the unit vector d, where h is smooth but not linear: the rims of cylinders
 //   insetOf    the same as supportOf, for a solid whose faces lie further in
 //
-// All in the solid's own frame. A round rim enters facets as kRimCorners points, the first in the direction of d: exact
-// for tilting and rolling; between them the outline runs up to 2 % of the radius inside of the circle, but for where
-// addRimCorner adds one. Where no point of the rim is further along d than the others by kSameGap, noise would be all
-// that says which is the first: there the corners are fixed in the body, the first at +x. Shapes that aren't convex (half-space, dish, mesh) have no features:
-// isConvex is false, and the functions must not be called.
+// All in the solid's own frame. A round rim enters facets as kRimCorners points, the first in the direction of d:
+// exact for tilting and rolling; between them the outline runs up to 2 % of the radius inside of the circle, but for
+// where addRimCorner adds one. Where no point of the rim is further along d than the others by kSameGap, noise would
+// be all that says which is the first: there the corners are fixed in the body, the first at +x. Shapes that aren't
+// convex (half-space, dish, mesh) have no features: isConvex is false, and the functions must not be called.
 #pragma once
 #include <array>
 #include <cstdint>
