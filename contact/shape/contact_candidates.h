@@ -37,7 +37,7 @@ class ContactCandidates {
     if (point.phi > refused_.phi) refused_ = point;
   }
   // Up to kMaxPairPoints of them, sorted by feature, in the frame that they were given in.
-  // Those of `last` stay for as long as no other is kStays times as good.
+  // Points of `last` stay for as long as no other is kStays times as good.
   FoundPoints keepBest(const LastPoints& last = {});
 
  private:

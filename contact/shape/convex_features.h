@@ -69,7 +69,7 @@ struct Strata {
   }
 };
 
-// The first corner of a rim, about its axis z; d of a unit vector.
+// The first corner of a rim about z, of `radius` [m]; d: x and y of a unit vector, along which it reaches furthest.
 inline Vec2 startOfRim(double radius, const Vec2& d) {
   const double tilt = d.norm();
   return 2 * radius * tilt > kSameGap ? Vec2(radius / tilt * d) : Vec2(radius, 0);

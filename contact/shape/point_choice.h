@@ -10,14 +10,14 @@
 //
 // d^2 / 2 g is the radius on which the solid would roll onto that point: flat comes before round. A body at rest keeps
 // the corners of the facet that it rests on, even where they are close together, and corners that are open join where
-// these leave room. Among equally deep ones the widest spread wins. (Rejected: d - 2 g takes far, open corners in place
-// of near, carrying ones, and the body falls from one set of corners to the next for ever; d / (g + s) favours the low
-// side of a tilted face so much that its far side is missing when it lands. Six or eight points: meshes came to rest no
-// sooner, and the solver paid.) A score must be better by a hundredth to win over a smaller feature, and twice as good
-// to win over a point that was kept in the last tick, which is also the first among the deepest to within s: a body that
-// rests or rocks by less than s keeps its points, and so its impulses. (Without that a cube on a cube, whose faces share
-// eight corners, went from one four of them to another and back, which moved the gaps that chose them, for ever.) Cost:
-// one scan over all points and four over those within the margin, where
+// these leave room. Among equally deep ones the widest spread wins. (Rejected: d - 2 g takes far, open corners in
+// place of near, carrying ones, and the body falls from one set of corners to the next for ever; d / (g + s) favours
+// the low side of a tilted face so much that its far side is missing when it lands. Six or eight points: meshes came
+// to rest no sooner, and the solver paid.) A score must be better by a hundredth to win over a smaller feature, and
+// twice as good to win over a point that was kept in the last tick, which is also the first among the deepest to
+// within s: a body that rests or rocks by less than s keeps its points, and so its impulses. (Without that a cube on a
+// cube, whose faces share eight corners, went from one four of them to another and back, which moved the gaps that
+// chose them, for ever.) Cost: one scan over all points and four over those within the margin, where
 //
 //   d <= |p - p_k| + s   for each chosen p_k: none is further than s outside an edge
 //
