@@ -15,8 +15,8 @@
 
 namespace pincer::contact {
 
-// True if a face along the normal of `last` (unit, out of b towards a) shows that; then `out` is as overlapFacets writes
-// it. `margin`, `size`, the frame: as there.
+// True if a face along the normal of `last` (unit, out of b towards a) shows that; then `out` is as overlapFacets
+// writes it. `margin`, `size`, the frame: as there.
 bool touchOnFaces(const PosedSolid& a, const PosedSolid& b, const LastPoints& last, double size, double margin,
                   PairPoints& out);
 
