@@ -15,86 +15,122 @@ namespace {
 constexpr int kB = BlockLu::kBlock;
 constexpr int kBB = kB * kB;
 
-// C -= A B, row-major, a row at a time in registers: in three pairs, or in one of four and one of two.
-void subtractProduct(NarrowLanes, const double* A, const double* B, double* C) {
-  for (int i = 0; i < kB; ++i, A += kB, C += kB) {
-    DoublePair* const c = &pairAt(C);
-    DoublePair c0 = c[0], c1 = c[1], c2 = c[2];
-    for (int k = 0; k < kB; ++k) {
-      const DoublePair* const b = &pairAt(B + kB * k);
-      const DoublePair a = {A[k], A[k]};
-      c0 -= a * b[0];
-      c1 -= a * b[1];
-      c2 -= a * b[2];
-    }
-    c[0] = c0;
-    c[1] = c1;
-    c[2] = c2;
+// A row of a block in registers: three pairs, or one of four and a pair. Numbers are set there, for one that is written
+// to memory holds up who reads its neighbours with it.
+template <class Lanes>
+struct Row {
+  static constexpr int kParts = kB / Lanes::count;
+  typename Lanes::Numbers part[kParts];
+
+  [[gnu::always_inline]] explicit Row(const double* row) {
+    for (int p = 0; p < kParts; ++p) part[p] = Lanes::at(row + Lanes::count * p);
   }
-}
+  [[gnu::always_inline]] void store(double* row) const {
+    for (int p = 0; p < kParts; ++p) Lanes::at(row + Lanes::count * p) = part[p];
+  }
+  [[gnu::always_inline]] void scale(double factor) {
+    for (int p = 0; p < kParts; ++p) part[p] *= factor;
+  }
+  [[gnu::always_inline]] void subtract(double factor, const Row& other) {
+    for (int p = 0; p < kParts; ++p) part[p] -= factor * other.part[p];
+  }
+  template <int k>
+  [[gnu::always_inline]] void set(double value) {
+    if constexpr (Lanes::count == 1)
+      part[k] = value;
+    else
+      part[k / Lanes::count][k % Lanes::count] = value;
+  }
+};
 #if defined(__x86_64__) && !defined(__clang__)
-// All of B stays in registers: less than half the time of pairs.
-[[gnu::target("avx2")]] void subtractProduct(FourLanes, const double* A, const double* B, double* C) {
-  FourLanes::Numbers b[kB];
-  DoublePair b_end[kB];
-#pragma GCC unroll 6
-  for (int k = 0; k < kB; ++k) {
-    b[k] = FourLanes::at(B + kB * k);
-    b_end[k] = pairAt(B + kB * k + FourLanes::count);
+template <>
+struct Row<FourLanes> {
+  FourLanes::Numbers front;
+  DoublePair end;
+
+  [[gnu::always_inline]] explicit Row(const double* row)
+      : front(FourLanes::at(row)), end(pairAt(row + FourLanes::count)) {}
+  [[gnu::always_inline]] void store(double* row) const {
+    FourLanes::at(row) = front;
+    pairAt(row + FourLanes::count) = end;
   }
-  for (int i = 0; i < kB; ++i, A += kB, C += kB) {
-    FourLanes::Numbers c = FourLanes::at(C);
-    DoublePair c_end = pairAt(C + FourLanes::count);
-#pragma GCC unroll 6
-    for (int k = 0; k < kB; ++k) {
-      c -= A[k] * b[k];
-      c_end -= A[k] * b_end[k];
-    }
-    FourLanes::at(C) = c;
-    pairAt(C + FourLanes::count) = c_end;
+  [[gnu::always_inline]] void scale(double factor) {
+    front *= factor;
+    end *= factor;
   }
-}
+  [[gnu::always_inline]] void subtract(double factor, const Row& other) {
+    front -= factor * other.front;
+    end -= factor * other.end;
+  }
+  template <int k>
+  [[gnu::always_inline]] void set(double value) {
+    if constexpr (k < FourLanes::count)
+      front[k] = value;
+    else
+      end[k - FourLanes::count] = value;
+  }
+};
 #endif
 
-// C = A B; C may be A.
+// C -= A B, row-major.
 template <class Lanes>
-void multiply(Lanes lanes, const double* A, const double* B, double* C) {
-  double product[kBB] = {};
-  subtractProduct(lanes, A, B, product);
-  for (int k = 0; k < kBB; ++k) C[k] = -product[k];
+[[gnu::always_inline]] inline void subtractProduct(Lanes, const double* A, const double* B, double* C) {
+  for (int i = 0; i < kB; ++i, A += kB, C += kB) {
+    Row<Lanes> c(C);
+    for (int k = 0; k < kB; ++k) c.subtract(A[k], Row<Lanes>(B + kB * k));
+    c.store(C);
+  }
+}
+
+// A = A B
+template <class Lanes>
+[[gnu::always_inline]] inline void multiplyBy(Lanes, double* A, const double* B) {
+  for (int i = 0; i < kB; ++i, A += kB) {
+    Row<Lanes> product(B);
+    product.scale(A[0]);
+    for (int k = 1; k < kB; ++k) product.subtract(-A[k], Row<Lanes>(B + kB * k));
+    product.store(A);
+  }
 }
 
 // y -= A x
 void subtractProduct6(const double* A, const double* x, double* y) {
-  for (int i = 0; i < kB; ++i, A += kB) {
-    y[i] -= A[0] * x[0] + A[1] * x[1] + A[2] * x[2] + A[3] * x[3] + A[4] * x[4] + A[5] * x[5];
+  for (int i = 0; i < kB; ++i, A += kB) y[i] -= dot6(A, x);
+}
+
+// Step k of Gauss and Jordan's: row k and that of the largest pivot change places, then the others lose column k.
+template <int k, class Lanes>
+[[gnu::always_inline]] inline bool eliminate(Lanes, double* A, int& pivot) {
+  pivot = k;
+  for (int i = k + 1; i < kB; ++i) {
+    if (std::abs(A[kB * i + k]) > std::abs(A[kB * pivot + k])) pivot = i;
   }
+  if (pivot != k) std::swap_ranges(A + kB * k, A + kB * (k + 1), A + kB * pivot);
+  const double value = A[kB * k + k];
+  if (!(std::abs(value) > 0) || !std::isfinite(value)) return false;
+  Row<Lanes> row(A + kB * k);
+  row.template set<k>(1);
+  row.scale(1 / value);
+  row.store(A + kB * k);
+  for (int i = 0; i < kB; ++i) {
+    if (i == k) continue;
+    Row<Lanes> other(A + kB * i);
+    const double factor = A[kB * i + k];
+    other.template set<k>(0);
+    other.subtract(factor, row);
+    other.store(A + kB * i);
+  }
+  return true;
 }
 
 // A becomes its inverse, by Gauss and Jordan with row pivots.
-bool invert(double* A) {
+template <class Lanes>
+[[gnu::always_inline]] inline bool invert(Lanes lanes, double* A) {
   int swapped[kB];
-  for (int k = 0; k < kB; ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < kB; ++i) {
-      if (std::abs(A[kB * i + k]) > std::abs(A[kB * pivot + k])) pivot = i;
-    }
-    swapped[k] = pivot;
-    if (pivot != k) std::swap_ranges(A + kB * k, A + kB * (k + 1), A + kB * pivot);
-    const double value = A[kB * k + k];
-    if (!(std::abs(value) > 0) || !std::isfinite(value)) return false;
-    const double inverse = 1 / value;
-    A[kB * k + k] = 1;
-    for (int j = 0; j < kB; ++j) A[kB * k + j] *= inverse;
-    double row[kB];
-    std::copy(A + kB * k, A + kB * (k + 1), row);
-    for (int i = 0; i < kB; ++i) {
-      if (i == k) continue;
-      const double factor = A[kB * i + k];
-      A[kB * i + k] = 0;
-      for (int j = 0; j < kB; ++j) A[kB * i + j] -= factor * row[j];
-    }
-  }
+  const bool is_regular = eliminate<0>(lanes, A, swapped[0]) && eliminate<1>(lanes, A, swapped[1]) &&
+                          eliminate<2>(lanes, A, swapped[2]) && eliminate<3>(lanes, A, swapped[3]) &&
+                          eliminate<4>(lanes, A, swapped[4]) && eliminate<5>(lanes, A, swapped[5]);
+  if (!is_regular) return false;
   for (int k = kB - 1; k >= 0; --k) {
     if (swapped[k] == k) continue;
     for (int i = 0; i < kB; ++i) std::swap(A[kB * i + k], A[kB * i + swapped[k]]);
@@ -246,10 +282,10 @@ bool BlockLu::factorise() {
     const int* target = targets_.data();
     for (int k = 0; k < nodes_; ++k) {
       double* const pivot = block(place(order_[k], order_[k]));
-      if (!invert(pivot)) return false;
+      if (!invert(lanes, pivot)) return false;
       for (int i = first_later_[k]; i < first_later_[k + 1]; ++i) {
         double* const L = block(lower_[i]);
-        multiply(lanes, L, pivot, L);
+        multiplyBy(lanes, L, pivot);
         for (int j = first_later_[k]; j < first_later_[k + 1]; ++j)
           subtractProduct(lanes, L, block(upper_[j]), block(*target++));
       }
@@ -269,11 +305,9 @@ void BlockLu::solve(double* b) const {
     double* const b_k = b + kB * order_[k];
     for (int j = first_later_[k]; j < first_later_[k + 1]; ++j)
       subtractProduct6(at(upper_[j]), b + kB * later_[j], b_k);
-    double x[kB] = {};
+    double x[kB];
     const double* const inverse = at(place(order_[k], order_[k]));
-    for (int i = 0; i < kB; ++i) {
-      for (int j = 0; j < kB; ++j) x[i] += inverse[kB * i + j] * b_k[j];
-    }
+    for (int i = 0; i < kB; ++i) x[i] = dot6(inverse + kB * i, b_k);
     std::copy(x, x + kB, b_k);
   }
 }
