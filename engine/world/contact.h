@@ -46,15 +46,15 @@ struct Contact {
   int open_ticks;           // before this tick, see ContactMemory
   ContactVector v_start_C;  // of a relative to b at the start of the tick, see relativeVelocity
   ContactVector offset_C;   // anchored stick, at the start of the tick; see ContactMemory
+  ContactVector r;          // of the last tick, then impulse on a in C [N s]
   // Asked for (contact_rows.cpp), `stuck` and the first `settling` recalled.
   bool far = false;      // it can't close within this part of the tick, and isn't solved (far_contacts.h)
   bool closing = false;  // it closes in this tick, from a positive gap or with an approaching velocity
   bool stuck = false;    // it stuck in the last tick: its tangential biases undo the offset
   ContactVector bias_C;  // part of q that isn't velocity [m/s], from torsion on [rad/s]
   // Solved (islands.cpp, solve_contacts.cpp).
-  ContactVector r;  // impulse on a in C [N s]
-  Vec3 impulse_W;   // impulse on a at p_W [N s]; b got exactly its negative
-  Vec3 u_C;         // velocity of a relative to b at the end of the tick, biases included [m/s]
+  Vec3 impulse_W;  // impulse on a at p_W [N s]; b got exactly its negative
+  Vec3 u_C;        // velocity of a relative to b at the end of the tick, biases included [m/s]
   bool sliding = false;
   int settling = 0;  // see ContactMemory; of the last tick before the solve, of this one after it
   // the last tick's impulses still fit: what moves slower is at rest (rest.h) [m/s]; 0: they don't

@@ -122,7 +122,6 @@ double slidingShare(const WorldModel& model, const WorldScratch& scratch, const 
 void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scratch, int i) {
   Contact& c = scratch.contacts[i];
   const int first = scratch.first_row[i], count = scratch.first_row[i + 1] - first;
-  const ContactMemory* const memory = c.memory;
   c.closing = false;
   const double normal_bias = normalBias(model, rates, scratch, c);
   double *const q_i = scratch.q.data() + first, *const r_i = scratch.r.data() + first;
@@ -136,7 +135,7 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
           c.stuck ? rates.tangent * (c.offset_C[k] + 0.5 * scratch.h * c.v_start_C[k]) : slide * c.v_start_C[k];
       const double bias = c.bias_C[k] = k == kNormalRow ? normal_bias : tangent_bias;
       q_i[k] = (k >= kTorsionRow ? radiusOf(c, k) : 1) * (v_free_C[k] + bias);
-      r_i[k] = memory ? rates.longer * memory->r[k] : 0;
+      r_i[k] = rates.longer * c.r[k];
     }
   });
   if (c.a.kind == SideKind::kJoint) {

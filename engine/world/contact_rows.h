@@ -38,10 +38,11 @@ constexpr double kClosingSpeed = 1e-6;       // slower approaches count as rest 
 void sortContacts(WorldScratch& scratch);
 
 // Finds what is remembered of the contacts, sorted by id, by identity, and of what has a new one by its place on the
-// pair (where corners lie on edges identities come and go); fills frames, arms, friction and stick offsets.
+// pair (where corners lie on edges identities come and go); fills frames, arms, friction, stick offsets and impulses.
 //   contacts  all of each two that it holds any of
 //   memories  sorted by id, from those of the first two on
-// Returns the memories from those of the last two on, for what comes after `contacts`.
+// Impulses that no contact of the same two finds go to the nearest that pushes alike. Returns the memories behind those
+// of the last two, for what comes after `contacts`.
 std::span<const ContactMemory> recallContacts(std::span<const ContactMemory> memories, std::span<Contact> contacts,
                                               const WorldScratch& scratch);
 

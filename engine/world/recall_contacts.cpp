@@ -61,6 +61,10 @@ void recall(Contact& c) {
     const double overlap = memory ? memory->offset_C[kNormalRow] : 0;
     c.offset_C[kNormalRow] = overlap < 0 ? std::clamp(c.phi, overlap, 0.0) : 0;
   });
+  if (memory)
+    c.r = memory->r;
+  else
+    c.r.setZero();
   c.mu = memory && memory->sliding ? slidingFriction(c.material, c.v_start_C.head<2>().norm()) : c.material.mu_s;
   c.open_ticks = memory ? memory->open_ticks : 0;
   c.settling = memory ? memory->settling : 0;
@@ -77,33 +81,40 @@ void sortContacts(WorldScratch& scratch) {
 
 namespace {
 
+constexpr double kSameNormal = 0.99;       // the cosine
+constexpr std::size_t kMostMemories = 64;  // of a pair, bits of those taken; the rest isn't found by place
+
 std::uint64_t pairOf(std::uint64_t id) { return id >> 32; }
 
-// Contacts and memories come sorted by id: each finds its own on the way. Returns how many contacts between bodies
-// found none, and drops from `memories` those before the last contact's.
+// Contacts and memories come sorted by id: each finds its own on the way, and `memories` loses those of the contacts'
+// pairs. Returns how many contacts of two bodies found none, and how many impulses no contact.
 int recallByIdentity(const WorldScratch& scratch, std::span<Contact> contacts,
                      std::span<const ContactMemory>& memories) {
   int missing = 0;
   const ContactMemory *m = memories.data(), *const end = m + memories.size();
+  const auto pass = [&] { missing += m++->active; };
   for (Contact& c : contacts) {
-    if (c.same_as >= 0) continue;
-    place(scratch, c);
-    while (m != end && m->id < c.id) ++m;
+    while (m != end && m->id < c.id) pass();
     const bool found = m != end && m->id == c.id;
-    c.memory = found ? m : nullptr;
-    missing += !found && c.a.kind == SideKind::kBody;
-    recall(c);
+    if (c.same_as < 0) {
+      place(scratch, c);
+      c.memory = found ? m : nullptr;
+      missing += !found && c.a.kind == SideKind::kBody;
+      recall(c);
+    }
+    m += found;
   }
+  while (m != end && pairOf(m->id) == pairOf(contacts.back().id)) pass();
   memories = {m, end};
   return missing;
 }
 
 // The nearest of a pair's memories that no contact has taken, where they push from the same place.
 const ContactMemory* findByPlace(std::span<const ContactMemory> pair, std::uint64_t taken, const Contact& c) {
-  constexpr double kSamePlace = 5e-3, kSameNormal = 0.99;  // of the arm; the cosine
+  constexpr double kSamePlace = 5e-3;  // of the arm
   const ContactMemory* nearest = nullptr;
   double least = kSamePlace * kSamePlace * std::min(c.arm_a_W.squaredNorm(), c.arm_b_W.squaredNorm());
-  for (std::size_t k = 0; k < std::min<std::size_t>(pair.size(), 64); ++k) {
+  for (std::size_t k = 0; k < std::min(pair.size(), kMostMemories); ++k) {
     if (taken >> k & 1 || pair[k].n_W.dot(c.n_W()) < kSameNormal) continue;
     const double distance = (pair[k].arm_a_W - c.arm_a_W).squaredNorm();
     if (distance >= least) continue;
@@ -113,16 +124,37 @@ const ContactMemory* findByPlace(std::span<const ContactMemory> pair, std::uint6
   return nearest;
 }
 
+// The impulse of what has no contact any more goes to the nearest one that pushes alike: where the crossing of two
+// edges runs over the end of one, two contacts become one, and it carries all of what they did.
+void passOn(const ContactMemory& memory, std::span<Contact> contacts) {
+  Contact* nearest = nullptr;
+  double least = kInfinity;
+  for (Contact& c : contacts) {
+    const double distance = (memory.arm_a_W - c.arm_a_W).squaredNorm();
+    if (memory.n_W.dot(c.n_W()) < kSameNormal || !(distance < least)) continue;
+    least = distance;
+    nearest = &c;
+  }
+  if (!nearest) return;
+  const Vec3 t2_W = memory.n_W.cross(memory.t1_W);
+  const Vec3 r_W = memory.r[0] * memory.t1_W + memory.r[1] * t2_W + memory.r[kNormalRow] * memory.n_W;
+  nearest->r.head<3>() += nearest->R_WC.transpose() * r_W;
+}
+
 void recallPairByPlace(std::span<const ContactMemory> memories, std::span<Contact> contacts) {
   std::uint64_t taken = 0;
   const auto take = [&](const ContactMemory* memory) {
-    if (memory && memory < memories.data() + 64) taken |= std::uint64_t{1} << (memory - memories.data());
+    if (memory && memory < memories.data() + kMostMemories) taken |= std::uint64_t{1} << (memory - memories.data());
   };
   for (const Contact& c : contacts) take(c.memory);
   for (Contact& c : contacts) {
     if (c.memory) continue;
     c.memory = findByPlace(memories, taken, c);
     take(c.memory);
+    if (c.memory) recall(c);
+  }
+  for (std::size_t k = 0; k < std::min(memories.size(), kMostMemories); ++k) {
+    if (!(taken >> k & 1) && memories[k].active) passOn(memories[k], contacts);
   }
 }
 
@@ -155,9 +187,6 @@ std::span<const ContactMemory> recallContacts(std::span<const ContactMemory> mem
   std::span<const ContactMemory> left = memories;
   if (recallByIdentity(scratch, contacts, left) == 0) return left;
   recallByPlace(memories, contacts);
-  for (Contact& c : contacts) {
-    if (c.a.kind == SideKind::kBody && c.same_as < 0) recall(c);
-  }
   return left;
 }
 
