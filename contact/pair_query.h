@@ -15,7 +15,6 @@
 // between the corners, about e^2 k / 8 for edge length e [m] and curvature k [1/m], is not seen. (A sphere of 20 mm
 // radius with edges of 5 mm sinks up to 0.16 mm deeper than its smooth surface.)
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -40,15 +39,22 @@ struct LastPoints {
   Vec3 n_W = Vec3::Zero();  // normal of one of them
   std::array<std::uint32_t, kMaxPairPoints> features{};
   int count = 0;
+  std::uint32_t carrying = 0;  // bit k: the point of features[k] pushed
 
-  void add(std::uint32_t feature) {
-    if (count < kMaxPairPoints) features[static_cast<std::size_t>(count++)] = feature;
+  enum class Role : std::uint8_t { kNone, kKept, kCarried };
+
+  void add(std::uint32_t feature, bool carried) {
+    if (count == kMaxPairPoints) return;
+    carrying |= static_cast<std::uint32_t>(carried) << count;
+    features[static_cast<std::size_t>(count++)] = feature;
   }
-  bool had(std::uint32_t feature) const {
-    const auto end = features.begin() + count;
-    return std::find(features.begin(), end, feature) != end;
+  Role roleOf(std::uint32_t feature) const {
+    for (int k = 0; k < count; ++k) {
+      if (features[static_cast<std::size_t>(k)] == feature) return carrying >> k & 1 ? Role::kCarried : Role::kKept;
+    }
+    return Role::kNone;
   }
-  LastPoints flipped() const { return {-n_W, features, count}; }
+  LastPoints flipped() const { return {-n_W, features, count, carrying}; }
 };
 
 struct PairPoints {

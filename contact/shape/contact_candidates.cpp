@@ -101,7 +101,7 @@ FoundPoints ContactCandidates::keepBest(const LastPoints& last) {
     PINCER_ASSERT(isUnitIfFinite(at(i).n_W));
     out.points[static_cast<std::size_t>(out.count++)] = at(i);
   };
-  const auto favour = [&](int i) { return last.had(at(i).feature) ? kStays : 1; };
+  const auto favour = [&](int i) { return favourOf(last, at(i).feature); };
   const auto comesFirst = [&](int i, int j) {  // deeper, or as deep and there before, or with the smaller feature
     if (j < 0 || at(i).phi < at(j).phi - kSameGap) return true;
     if (!(at(i).phi < at(j).phi + kSameGap)) return false;

@@ -150,7 +150,7 @@ void facet(const Cylinder& c, const Vec3& d, Facet& f) {
     f.line_radius = c.radius;
     return addLine(c.radius * unitOr(d.head<2>(), Vec2::UnitX()), c.half_length, d, 64, f);
   }
-  Vec2 p = startOfRim(c.radius, d.head<2>());
+  Vec2 p = startOfRim(c.radius, d.head<2>(), kBetweenSixteen);
   f.rim_radius = c.radius;
   std::array<OutlinePoint, kRimCorners> outline;
   for (int k = 0; k < kRimCorners; ++k, p = nextOnRim(p)) outline[static_cast<std::size_t>(k)] = {p, k};
@@ -187,7 +187,7 @@ void cutEnd(const CylinderWithFlat& c, const Vec3& d, Facet& f) {
   const double w = halfChord(c.radius, c.flat_distance);
   outline[static_cast<std::size_t>(count++)] = {{c.flat_distance, w}, 16};
   std::array<Vec2, kRimCorners> rim;
-  rim[0] = startOfRim(c.radius, d.head<2>());
+  rim[0] = startOfRim(c.radius, d.head<2>(), kBetweenSixteen);
   for (std::size_t k = 1; k < rim.size(); ++k) rim[k] = nextOnRim(rim[k - 1]);
   std::size_t start = 0;  // the first at or after +x
   for (std::size_t k = 0; k < rim.size(); ++k) {

@@ -13,8 +13,8 @@
 //
 // All in the solid's own frame. A round rim enters facets as kRimCorners points, the first in the direction of d:
 // exact for tilting and rolling; between them the outline runs up to 2 % of the radius inside of the circle, but for
-// where addRimCorner adds one. Where no point of the rim is further along d than the others by kSameGap, noise would
-// be all that says which is the first: there the corners are fixed in the body, the first at +x. Shapes that aren't
+// where addRimCorner adds one. Where the rim is further along d than corners that are fixed in the body, the first at
+// +x, by kSameGap at most, those stand for it, or they would run round it as it rocks. Shapes that aren't
 // convex (half-space, dish, mesh) have no features: isConvex is false, and the functions must not be called.
 #pragma once
 #include <array>
@@ -69,10 +69,14 @@ struct Strata {
   }
 };
 
+// By what share of radius and tilt the furthest point of a rim is further than the nearest of 4 or 16 corners of it, at
+// most: 1 - cos of half the angle between two.
+inline constexpr double kBetweenFour = 0.29289321881345245, kBetweenSixteen = 0.019214719596769552;
+
 // The first corner of a rim about z, of `radius` [m]; d: x and y of a unit vector, along which it reaches furthest.
-inline Vec2 startOfRim(double radius, const Vec2& d) {
+inline Vec2 startOfRim(double radius, const Vec2& d, double between) {
   const double tilt = d.norm();
-  return 2 * radius * tilt > kSameGap ? Vec2(radius / tilt * d) : Vec2(radius, 0);
+  return between * radius * tilt > kSameGap ? Vec2(radius / tilt * d) : Vec2(radius, 0);
 }
 
 bool isConvex(const Shape& shape);

@@ -40,7 +40,7 @@ ExtremePoints pointsOf(const Box& box, const Vec2&, ExtremePointStore& store) {
 }
 
 ExtremePoints pointsOf(const Cylinder& cylinder, const Vec2& steepest, ExtremePointStore& store) {
-  const Vec2 first = startOfRim(cylinder.radius, steepest);
+  const Vec2 first = startOfRim(cylinder.radius, steepest, kBetweenFour);
   const double everywhere = 2 * cylinder.radius;
   addRim(first, cylinder.half_length, everywhere, 0, store);
   addRim(first, -cylinder.half_length, everywhere, 4, store);
@@ -50,7 +50,7 @@ ExtremePoints pointsOf(const Cylinder& cylinder, const Vec2& steepest, ExtremePo
 ExtremePoints pointsOf(const CylinderWithFlat& cylinder, const Vec2& steepest, ExtremePointStore& store) {
   const double h = cylinder.half_length;
   const double d = cylinder.flat_distance;
-  const Vec2 first = startOfRim(cylinder.radius, steepest);
+  const Vec2 first = startOfRim(cylinder.radius, steepest, kBetweenFour);
   addRim(first, h, d, 0, store);
   addRim(first, -h, d, 4, store);
   const double w = std::sqrt((cylinder.radius - d) * (cylinder.radius + d));

@@ -11,10 +11,10 @@
 //   mesh                the vertices of its convex hull; feature: the index
 //
 // The first point of a rim is its deepest: it moves along the rim as the cylinder rolls, and is exact for rolling,
-// tipping and lying on the side. A cylinder that stands upright to within 1e-6 rad has no deepest rim point but noise;
-// there the four points are fixed in the body (the first at +x), so that a resting cylinder keeps its contacts. The
-// price: the rim is deeper than its points by at most 0.3e-6 radii. A mesh rests on the facets of its hull: the support
-// does not feel how the smooth surface bulges between the vertices.
+// tipping and lying on the side. Where the rim is deeper than four points that are fixed in the body (the first at +x)
+// by 1 um at most, those stand for it (startOfRim): a cylinder that rests, or rocks by that, keeps its contacts. (Discs
+// that lay 2 um askew rocked for ever on points that ran round the rim.) A mesh rests on the facets of its hull: the
+// support does not feel how the smooth surface bulges between the vertices.
 #pragma once
 #include <array>
 #include <cstdint>

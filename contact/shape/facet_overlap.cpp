@@ -184,8 +184,9 @@ void clipFacet(const FlatFacet& facet, const FlatFacet& clipper, bool clipper_is
   }
 }
 
-// The part of segment f that lies over the segment g, measured along f: the ends of f or the feet of g's ends.
-void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance, Shared& out) {
+// The part of segment f that lies over the segment g, measured along f: the ends of f or the feet of g's ends; and
+// where they cross, without ends within `one_point` of that [m]: of two such now one, now the other would carry.
+void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance, double one_point, Shared& out) {
   const Vec2 a0 = fa.corner(0).x, b0 = fb.corner(0).x;
   const Vec2 a = fa.corner(1).x - a0, b = fb.corner(1).x - b0;
   const double sine = cross(a, b), lengths = a.norm() * b.norm();
@@ -205,7 +206,7 @@ void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance,
     const Vec2 beside = from + at * line - end.x;
     if (beside.norm() > tolerance + radii) return;
     const Vec2 x = end.x + share * beside;
-    const auto isSame = [&](const Corner& other) { return (other.x - x).norm() <= tolerance; };
+    const auto isSame = [&](const Corner& other) { return (other.x - x).norm() <= one_point; };
     if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame)) out.add(x, end.feature);
   };
   const double share_a = radii > 0 ? fa.line_radius / radii : 0.5;
@@ -213,10 +214,10 @@ void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance,
   for (int i = 0; i < 2; ++i) addEnd(fb.corner(i), a0, a, 1 - share_a);
 }
 
-void share(const FlatFacet& fa, const FlatFacet& fb, double tolerance, Shared& out) {
+void share(const FlatFacet& fa, const FlatFacet& fb, double tolerance, double one_point, Shared& out) {
   if (fa.count == 1) return out.add(fa.corner(0).x, fa.corner(0).feature);
   if (fb.count == 1) return out.add(fb.corner(0).x, fb.corner(0).feature);
-  if (fa.count == 2 && fb.count == 2) return overlapSegments(fa, fb, tolerance, out);
+  if (fa.count == 2 && fb.count == 2) return overlapSegments(fa, fb, tolerance, one_point, out);
   if (fb.count > 2) return clipFacet(fa, fb, false, tolerance, out);
   clipFacet(fb, fa, true, tolerance, out);
 }
@@ -328,7 +329,7 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   for (double slack = kSamePlace; slack < 2e-4 && !found;
        slack *= 10) {  // the direction may be right to round-off only
     shared.count = 0;
-    share(fa, fb, slack * size, shared);
+    share(fa, fb, slack * size, kOnePoint * size, shared);
     heights.measure(shared, surfaces);
     found = heights.least_gap < least + slack * size;
     exactly = exactly || (found && slack == kSamePlace);

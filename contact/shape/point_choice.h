@@ -13,11 +13,13 @@
 // these leave room. Among equally deep ones the widest spread wins. (Rejected: d - 2 g takes far, open corners in
 // place of near, carrying ones, and the body falls from one set of corners to the next for ever; d / (g + s) favours
 // the low side of a tilted face so much that its far side is missing when it lands. Six or eight points: meshes came
-// to rest no sooner, and the solver paid.) A score must be better by a hundredth to win over a smaller feature, and
-// twice as good to win over a point that was kept in the last tick, which is also the first among the deepest to
-// within s: a body that rests or rocks by less than s keeps its points, and so its impulses. (Without that a cube on a
-// cube, whose faces share eight corners, went from one four of them to another and back, which moved the gaps that
-// chose them, for ever.) Cost: one scan over all points and four over those within the margin, where
+// to rest no sooner, and the solver paid.) A score must be better by a hundredth to win over a smaller feature, twice
+// as good to win over a point that was kept in the last tick, a hundred times over one that carried; that is also the
+// first among the deepest to within s: a body that rests or rocks by less than s keeps its points, and so its impulses.
+// (Without that a cube on a cube, whose faces share eight corners, went from one four of them to another and back,
+// which moved the gaps that chose them, for ever; and where an open corner was twice as good as the one that carried
+// most, a box sank into that by 2 um, was pushed out, and so on.) Cost: one scan over all points and four over those
+// within the margin, where
 //
 //   d <= |p - p_k| + s   for each chosen p_k: none is further than s outside an edge
 //
@@ -37,6 +39,12 @@
 namespace pincer::contact {
 
 constexpr int kMaxChosen = 4;  // more bring no rest, but cost the solver, see above
+
+// By how much a point's score counts more for what it did in the last tick.
+inline double favourOf(const LastPoints& last, std::uint32_t feature) {
+  const LastPoints::Role role = last.roleOf(feature);
+  return role == LastPoints::Role::kCarried ? kCarries : role == LastPoints::Role::kKept ? kStays : 1;
+}
 
 struct Chosen {
   int index;   // of the extreme point
@@ -73,7 +81,7 @@ class PointChoice {
   static constexpr int kMaxEdges = (kMaxChosen - 1) * (kMaxChosen - 2);  // between all but the last, there and back
 
   double gapOf(int i) const { return support_.gap(solid_.points[i]) - solid_.rounding; }
-  Near near(int i, double gap) const { return {{i, gap}, kInfinity, last_.had(solid_.featureOf(i)) ? kStays : 1}; }
+  Near near(int i, double gap) const { return {{i, gap}, kInfinity, favourOf(last_, solid_.featureOf(i))}; }
   int candidates() const { return static_cast<int>(solid_.points.size()); }
   const Vec3& chosenPoint(int i) const { return solid_.points[chosen_[i].index]; }
   template <class Predicate>

@@ -7,8 +7,8 @@ namespace pincer::contact {
 inline constexpr double kSameGap = 1e-6;  // [m]: of two points of a manifold neither is deeper
 // ratio of scores from which a point takes another's place: below, names would flicker
 inline constexpr double kBetter = 1.01;
-// of a point that was kept in the last tick: what rests or rocks keeps its points, and solvers the impulses there
-inline constexpr double kStays = 2;
+// of a point that was kept in the last tick, or carried: what rests or rocks keeps its points, and solvers the impulses
+inline constexpr double kStays = 2, kCarries = 100;
 inline constexpr double kLikeNormals = 0.95;  // cosine of 18 degrees: points with normals that near form a group
 inline constexpr double kNoAngle = 1e-6;  // [rad], sine: lines nearer to parallel, or to a right angle, count as that
 inline constexpr double kOneNormal = 1e-12;    // [rad]: the same but for round-off

@@ -36,7 +36,7 @@ contact::LastPoints lastPoints(const WorldState& state, std::uint64_t first) {
   for (auto m = std::lower_bound(state.contacts.begin(), end, first, less); m != end && m->id >> 32 == first >> 32;
        ++m) {
     if (last.count == 0) last.n_W = m->n_W;
-    last.add(static_cast<std::uint32_t>(m->id));
+    last.add(static_cast<std::uint32_t>(m->id), m->active);
   }
   return last;
 }

@@ -17,7 +17,7 @@ struct PairPlace {
   double margin = 0;  // [m]
   contact::LastPoints last{};
 
-  using Numbers = std::array<double, 22>;
+  using Numbers = std::array<double, 23>;
   Numbers numbers() const {
     const Quat &a = X_WA.q, &b = X_WB.q;
     const Vec3 &p = X_WA.p, &o = X_WB.p, &n = last.n_W;
@@ -25,6 +25,7 @@ struct PairPlace {
                 o.z(), b.w(), b.x(), b.y(), b.z(), n.x(), n.y(), n.z(), margin};
     static_assert(sizeof last.features == 4 * sizeof(double));
     std::memcpy(&all[18], last.features.data(), sizeof last.features);
+    all[22] = last.carrying;
     return all;
   }
 };

@@ -70,11 +70,11 @@ class PlanePoints {
   std::array<std::size_t, kMostThinned> index_;
 };
 
-bool isRemembered(const WorldState& state, std::uint64_t id) {
+const ContactMemory* memoryOf(const WorldState& state, std::uint64_t id) {
   const auto less = [](const ContactMemory& m, std::uint64_t other) { return m.id < other; };
   const auto end = state.contacts.begin() + state.contact_count;
   const auto found = std::lower_bound(state.contacts.begin(), end, id, less);
-  return found != end && found->id == id;
+  return found != end && found->id == id ? &*found : nullptr;
 }
 
 enum class Fate : unsigned char { kOpen, kKept, kDropped };
@@ -93,7 +93,8 @@ void thinPlane(const WorldState& state, std::span<const Contact> contacts, std::
   const contact::ExtremePoints points{plane.points(), {}, 0};
   contact::LastPoints last;
   for (std::uint32_t i = 0; i < plane.count(); ++i) {
-    if (isRemembered(state, contacts[plane.indexOf(static_cast<int>(i))].id)) last.add(i);
+    const ContactMemory* const memory = memoryOf(state, contacts[plane.indexOf(static_cast<int>(i))].id);
+    if (memory) last.add(i, memory->active);
   }
   const contact::PointChoice<PlanePoints> choice(points, plane, std::numeric_limits<double>::infinity(), last);
   for (int i = 0; i < choice.count(); ++i) fates[plane.indexOf(choice[i].index)] = Fate::kKept;

@@ -203,7 +203,7 @@ TEST(Manifolds, WhatLiesAlongALineIsHeldAtItsEnds) {
 
 LastPoints lastOf(const PairPoints& points) {
   LastPoints last{points.points[0].n_W};
-  for (int k = 0; k < points.count; ++k) last.add(points.points[static_cast<std::size_t>(k)].feature);
+  for (int k = 0; k < points.count; ++k) last.add(points.points[static_cast<std::size_t>(k)].feature, false);
   return last;
 }
 
@@ -240,10 +240,27 @@ TEST(Manifolds, CandidatesThatWereKeptStayUntilOneIsTwiceAsGood) {
     candidates.keepBest(last).place(Pose{}, out);
     return out;
   };
-  const LastPoints corners{Vec3::UnitZ(), {1, 2, 3, 4}, 4};
+  const LastPoints corners{Vec3::UnitZ(), {1, 2, 3, 4}, 4, 0};
   EXPECT_EQ(tests::featuresOf(kept(1, corners)), (std::set<std::uint32_t>{1, 2, 3, 4}));
   EXPECT_EQ(tests::featuresOf(kept(1, {})).count(5), 1u);
   EXPECT_EQ(tests::featuresOf(kept(3, corners)).count(5), 1u);
+}
+
+// An open corner of a box that was twice as good took the place of the one that carried most; there the box sank by 2
+// um, was pushed out, and so on for ever.
+TEST(Manifolds, CandidatesThatCarriedStayUntilOneIsAHundredTimesAsGood) {
+  const auto kept = [](double further, std::uint32_t carrying) {
+    ContactCandidates candidates;
+    std::uint32_t feature = 0;
+    for (const Vec2& x : {Vec2(-1, -1), Vec2(1, -1), Vec2(-1, 1), Vec2(1, 1), Vec2(1.2 * further, 0.9 * further)})
+      candidates.add({{Vec3(0.01 * x.x(), 0.01 * x.y(), 0), Vec3::UnitZ(), -1e-7, ++feature}});
+    PairPoints out;
+    candidates.keepBest({Vec3::UnitZ(), {1, 2, 3, 4}, 4, carrying}).place(Pose{}, out);
+    return tests::featuresOf(out);
+  };
+  EXPECT_EQ(kept(3, 0b1111), (std::set<std::uint32_t>{1, 2, 3, 4}));
+  EXPECT_EQ(kept(60, 0b1111).count(5), 1u);
+  EXPECT_EQ(kept(3, 0b1110), (std::set<std::uint32_t>{2, 3, 4, 5}));  // the one that didn't makes room
 }
 
 // Of points in a line the deepest, somewhere between the others, doesn't hide one of the two ends.
@@ -305,6 +322,26 @@ TEST(Manifolds, CylinderLiesOnTheEndsOfItsLine) {
       for (const double x : {0.003, 0.03}) {
         const PairPoints p = askPair(cylinder, {lying, {x, -0.01, 0.032 + gap}}, table);
         expectLine(p, {x - 0.019, -0.01, z}, {std::min(x + 0.019, 0.04), -0.01, z}, gap, Vec3::UnitZ(), "on top");
+      }
+    }
+  }
+}
+
+// Cans that cross near the end of one touched at the crossing and at the end beside it, of which now one, now the other
+// carried.
+TEST(Manifolds, ACrossingBesideAnEndIsOnePoint) {
+  const Cylinder can{0.011, 0.012};
+  const Quat lying = about(Vec3::UnitY(), 0.5 * tests::kPi);
+  for (const double angle : {0.01, 0.05, 0.2}) {
+    for (int i = -20; i <= 20; ++i) {
+      const Vec3 crossing(0.012 + 1e-6 * i, 0, 0.022), along(std::cos(angle), std::sin(angle), 0);
+      // seen from the lower one, which lies along x
+      const Pose X{lying.conjugate() * about(Vec3::UnitZ(), angle) * lying,
+                   lying.conjugate() * (crossing + 0.003 * along)};
+      const PairPoints p = askPair(can, X, can);
+      ASSERT_GE(p.count, 1) << angle << " " << i;
+      for (int k = 0; k < p.count; ++k) {
+        for (int l = 0; l < k; ++l) EXPECT_GT((p.points[k].p_W - p.points[l].p_W).norm(), 1e-5) << angle << " " << i;
       }
     }
   }
