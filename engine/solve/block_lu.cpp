@@ -95,7 +95,9 @@ template <class Lanes>
 
 // y -= A x
 void subtractProduct6(const double* A, const double* x, double* y) {
-  for (int i = 0; i < kB; ++i, A += kB) y[i] -= dot6(A, x);
+  for (int i = 0; i < kB; ++i, A += kB) {
+    y[i] -= A[0] * x[0] + A[1] * x[1] + A[2] * x[2] + A[3] * x[3] + A[4] * x[4] + A[5] * x[5];
+  }
 }
 
 // Step k of Gauss and Jordan's: row k and that of the largest pivot change places, then the others lose column k.
@@ -305,9 +307,11 @@ void BlockLu::solve(double* b) const {
     double* const b_k = b + kB * order_[k];
     for (int j = first_later_[k]; j < first_later_[k + 1]; ++j)
       subtractProduct6(at(upper_[j]), b + kB * later_[j], b_k);
-    double x[kB];
+    double x[kB] = {};
     const double* const inverse = at(place(order_[k], order_[k]));
-    for (int i = 0; i < kB; ++i) x[i] = dot6(inverse + kB * i, b_k);
+    for (int i = 0; i < kB; ++i) {
+      for (int j = 0; j < kB; ++j) x[i] += inverse[kB * i + j] * b_k[j];
+    }
     std::copy(x, x + kB, b_k);
   }
 }
