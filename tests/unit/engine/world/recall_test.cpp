@@ -1,4 +1,4 @@
-// What contacts of one tick know of those of the last.
+// Memory from tick to tick: what contacts know of those of the last.
 #include <gtest/gtest.h>
 
 #include "pincer/engine/step.h"
