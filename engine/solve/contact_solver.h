@@ -64,9 +64,9 @@ bool restsAsItIs(const ContactProblem& problem, const SolverOptions& options, So
 double contactResidual(const ContactProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& r,
                        SolverScratch& scratch, Eigen::Ref<Eigen::VectorXd> u);
 
-// Impulses that stop what closes, by `sweeps` from none at all. For a problem without an answer: the iterate
-// with the least residual may there be no impulse at all. They bring no energy in, wherever they end; the
-// budget may end them sooner. `u` as above.
+// Impulses that stop what closes, by `sweeps` from those in `r`, in the cones. For a problem without an answer, from
+// none: the iterate with the least residual may there be no impulse at all. They bring no energy in, wherever they end;
+// the budget may end them sooner. `u` as above.
 void stopBySweeps(const ContactProblem& problem, int sweeps, SolverScratch& scratch, VectorMap r, VectorMap u);
 
 }  // namespace pincer::engine

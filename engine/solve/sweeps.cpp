@@ -251,8 +251,7 @@ SweptResult Sweeps::until(double enough, const ContactError& start, double* u) {
 
 void Sweeps::stop(int sweeps) {
   const int n = problem_.contactCount();
-  std::fill(r_, r_ + problem_.rowCount(), 0.0);
-  std::fill(y_, y_ + kMoverFreedoms * problem_.movers, 0.0);
+  respond(problem_, r_, scratch_);
   for (int k = 0; k < sweeps && (k < kFewestSweeps || scratch_.operations_left >= 0); ++k) {
     sweep(k % 2 == 1);
     spend(kPerContactSwept * n + kPerSlideStep * slide_steps_, scratch_);

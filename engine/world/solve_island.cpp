@@ -272,10 +272,14 @@ class IslandSolve {
 
   // Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then
   // they only stop what closes: biases that push are left out, and sweeps begin with no impulse at all. Support is
-  // better than falling through the floor. Returns what it took of the operations.
+  // better than falling through the floor. Where a budget cut the solve they take the last tick's impulses further, or a
+  // column of fourteen bricks would sink by 6 mm. Returns what it took of the operations.
   std::int64_t stopOnly(std::int64_t operations) {
     memory_.operations_left = operations;
     dropPushes();
+    const bool goes_on = isLimited(scratch_) && scratch_.h > 0;
+    forEachRow([&](Contact& c, int k, int row) { island_.r[row] = goes_on ? c.r[k] : 0; });
+    projectOntoCones(problem_, island_.r);
     stopBySweeps(problem_, kStoppingSweeps, memory_, VectorMap(island_.r, island_.rows),
                  VectorMap(island_.u, island_.rows));
     return operations - memory_.operations_left;

@@ -28,7 +28,7 @@ const std::map<std::string, std::string> kWritesImpulses = {
     {"followCentralPath", "way 2: an interior point, before Newton's method"},
     {"solvePointProblem", "way 2, last resort of a point between walls"},
     {"searchImpulses", "way 3: many; descents, rounds and sweeps"},
-    {"stopBySweeps", "the front door, where there is no answer: the same sweeps, from none at all"},
+    {"stopBySweeps", "the front door, where there is no answer: the same sweeps"},
     {"Sweeps", "way 3, between balls and where factors don't fit: contact by contact"},
     {"solveOneContact", "one contact, exactly"},
     {"limitFriction", "the law of one contact"},

@@ -143,7 +143,7 @@ TEST_P(RandomProblems, AreStoppedBySweepsThatTakeEnergyAway) {
   for (int n = 0; n < 20; ++n) {
     OwnedContactProblem p = GetParam().draw(random);
     SolverScratch scratch(static_cast<int>(p.mu.size()), p.movers);
-    Eigen::VectorXd r(p.q.size()), u(p.q.size());
+    Eigen::VectorXd r = Eigen::VectorXd::Zero(p.q.size()), u(p.q.size());  // each goes on from the one before
     bool closes = false;
     for (std::size_t i = 0; i < p.mu.size(); ++i) closes = closes || p.q[p.first_row[i] + kNormalRow] < 0;
     for (int sweeps = 1; sweeps <= 16; sweeps *= 2) {
