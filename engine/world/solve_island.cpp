@@ -27,6 +27,7 @@ constexpr double kLost = 1e-2;  // residual that is no answer
 // of more than kFewContacts, whose impulses may have been scaled down to add no energy
 constexpr double kHeapLost = 0.3;
 constexpr int kStoppingSweeps = 30;                      // instead
+constexpr double kTakenOver = 0.9;                       // of the last tick's impulses: from below, or columns hop
 constexpr std::int64_t kPushOperations = 50'000;         // multiplications per contact, twice what was needed
 constexpr double kMostPushed = 10 * kLargestCorrection;  // of what is pushed out, chosen [m/s]
 constexpr double kLargestGive = 1e-4;  // by which contacts around loops of bodies may contradict each other [m/s]
@@ -278,7 +279,7 @@ class IslandSolve {
     memory_.operations_left = operations;
     dropPushes();
     const bool goes_on = isLimited(scratch_) && scratch_.h > 0;
-    forEachRow([&](Contact& c, int k, int row) { island_.r[row] = goes_on ? c.r[k] : 0; });
+    forEachRow([&](Contact& c, int k, int row) { island_.r[row] = goes_on ? kTakenOver * c.r[k] : 0; });
     projectOntoCones(problem_, island_.r);
     stopBySweeps(problem_, kStoppingSweeps, memory_, VectorMap(island_.r, island_.rows),
                  VectorMap(island_.u, island_.rows));
