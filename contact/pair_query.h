@@ -41,7 +41,7 @@ struct LastPoints {
   int count = 0;
   std::uint32_t carrying = 0;  // bit k: the point of features[k] pushed
 
-  enum class Role : std::uint8_t { kNone, kKept, kCarried };
+  enum class Role : std::uint8_t { kNone, kKept, kCarried };  // of a point in the last tick
 
   void add(std::uint32_t feature, bool carried) {
     if (count == kMaxPairPoints) return;

@@ -273,8 +273,8 @@ class IslandSolve {
 
   // Contacts that contradict each other have no answer: what overlaps in all directions can't be pushed apart. Then
   // they only stop what closes: biases that push are left out, and sweeps begin with no impulse at all. Support is
-  // better than falling through the floor. Where a budget cut the solve they take the last tick's impulses further, or a
-  // column of fourteen bricks would sink by 6 mm. Returns what it took of the operations.
+  // better than falling through the floor. Where a budget cut the solve they take the last tick's impulses further, or
+  // a column of fourteen bricks would sink by 6 mm. Returns what it took of the operations.
   std::int64_t stopOnly(std::int64_t operations) {
     memory_.operations_left = operations;
     dropPushes();

@@ -11,7 +11,7 @@
 namespace pincer::tasks {
 namespace {
 
-// What ticks took of this thread [us].
+// Times of ticks, of this thread [us].
 struct Costs {
   std::vector<double> all, late;  // late: of the second half of each run
 
