@@ -39,7 +39,7 @@ class Sweeps {
   // From the warm start, whose u `u` is, until the error is at most `enough` [m/s] or `start` shows that a few do.
   SweptResult until(double enough, const ContactError& start, double* u);
 
-  // To and fro: `sweeps`, or a few where the budget is spent.
+  // To and fro, from the warm start: `sweeps`, or a few where the budget is spent.
   void stop(int sweeps);
 
  private:

@@ -46,7 +46,7 @@ struct Contact {
   int open_ticks;           // before this tick, see ContactMemory
   ContactVector v_start_C;  // of a relative to b at the start of the tick, see relativeVelocity
   ContactVector offset_C;   // anchored stick, at the start of the tick; see ContactMemory
-  ContactVector r;          // of the last tick, then impulse on a in C [N s]
+  ContactVector r;          // impulse on a in C [N s]: the last tick's, by the length of this part of it; then solved
   // Asked for (contact_rows.cpp), `stuck` and the first `settling` recalled.
   bool far = false;      // it can't close within this part of the tick, and isn't solved (far_contacts.h)
   bool closing = false;  // it closes in this tick, from a positive gap or with an approaching velocity

@@ -135,7 +135,7 @@ void fillContact(const WorldModel& model, const Rates& rates, WorldScratch& scra
           c.stuck ? rates.tangent * (c.offset_C[k] + 0.5 * scratch.h * c.v_start_C[k]) : slide * c.v_start_C[k];
       const double bias = c.bias_C[k] = k == kNormalRow ? normal_bias : tangent_bias;
       q_i[k] = (k >= kTorsionRow ? radiusOf(c, k) : 1) * (v_free_C[k] + bias);
-      r_i[k] = rates.longer * c.r[k];
+      r_i[k] = c.r[k] *= rates.longer;
     }
   });
   if (c.a.kind == SideKind::kJoint) {
