@@ -85,6 +85,7 @@ struct ContactProblem {
   std::span<const RoundContact> round = {};  // of each contact; empty where nobody looked
   std::span<const int> first_side = {};      // size n + 1; empty where every contact has two sides
   double noise = kGapNoise;                  // what round-off asks for in every tick [m/s]
+  std::span<const double> weight = {};       // size n: weightOf each (residual.h); empty where nobody weighed them
 
   int contactCount() const { return static_cast<int>(mu.size()); }
   int rowCount() const { return static_cast<int>(q.size()); }

@@ -1,5 +1,7 @@
 #include "pincer/engine/solve/residual.h"
 
+#include <algorithm>
+
 #include "pincer/engine/solve/contact_solver.h"
 #include "pincer/engine/solve/mobility.h"
 #include "pincer/engine/solve/round_contact.h"
@@ -21,22 +23,24 @@ void projectOntoCones(const ContactProblem& problem, double* r) {
   }
 }
 
-void weighContacts(const ContactProblem& problem, SolverScratch& scratch) {
-  for (int i = 0; i < problem.contactCount(); ++i) {
-    if (!problem.round.empty() && problem.round[static_cast<std::size_t>(i)].isRound()) {
-      const RoundContact& c = problem.round[static_cast<std::size_t>(i)];
-      scratch.weight[static_cast<std::size_t>(i)] = (2 / c.inverse_W_tt + 1 / c.inverse_W_nn) / kTorsionRow;
-      continue;
+double weightOf(std::span<const ContactSide> sides, int rows) {
+  double sum = 0;
+  withRows(rows, [&](auto count) {
+    for (const ContactSide& side : sides) {
+      if (side.mover < 0) continue;
+      for (int k = 0; k < count; ++k) sum += dot6(side.A[k], side.A[k]);
     }
-    double sum = 0;
-    withRows(problem.rows(i), [&](auto rows) {
-      for (const ContactSide& side : problem.sidesOf(i)) {
-        if (side.mover < 0) continue;
-        for (int k = 0; k < rows; ++k) sum += dot6(side.A[k], side.A[k]);
-      }
-    });
-    scratch.weight[static_cast<std::size_t>(i)] = sum / problem.rows(i);
+  });
+  return sum / rows;
+}
+
+void weighContacts(const ContactProblem& problem, SolverScratch& scratch) {
+  if (!problem.weight.empty()) {
+    std::copy(problem.weight.begin(), problem.weight.end(), scratch.weight.begin());
+    return;
   }
+  for (int i = 0; i < problem.contactCount(); ++i)
+    scratch.weight[static_cast<std::size_t>(i)] = weightOf(problem.sidesOf(i), problem.rows(i));
 }
 
 double referenceSpeed(const ContactProblem& problem) {

@@ -53,6 +53,8 @@ class WorstResidual {
 // Puts `r` into the cones; a contact whose impulse isn't finite gets none.
 void projectOntoCones(const ContactProblem& problem, double* r);
 
+// w of a contact: the mean of W_ii's diagonal [1/kg].
+double weightOf(std::span<const ContactSide> sides, int rows);
 // Fills scratch.weight.
 void weighContacts(const ContactProblem& problem, SolverScratch& scratch);
 

@@ -109,9 +109,11 @@ void collideBodies(const WorldModel& model, const WorldState& state, WorldScratc
     const Material* const material = pair.is_of_many ? nullptr : &pair.material;
     collidePair(model, state, {pair.a, pair.b}, material, h, found, scratch);
   }
-  if (!scratch.broad_phase) return;
-  for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch))
-    collidePair(model, state, pair, nullptr, h, found, scratch);
+  if (scratch.broad_phase) {
+    for (const BodyPair& pair : scratch.broad_phase->candidates(model, scratch))
+      collidePair(model, state, pair, nullptr, h, found, scratch);
+  }
+  takeKept(scratch);
 }
 
 }  // namespace pincer::engine

@@ -23,6 +23,7 @@ IslandScratch::IslandScratch(const WorldModel& model) {
   first_row.resize(2 * n + 1);
   sides.resize(n);
   filled.resize(n);
+  weight.resize(n);
   root_inertia.resize(movers);
   mu.resize(n);
   for (std::vector<double>* per_row : {&q, &r, &u}) per_row->resize(m);

@@ -4,6 +4,7 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/engine/solve/few_contacts.h"
+#include "pincer/engine/solve/residual.h"
 #include "pincer/engine/world/contact_rows.h"
 #include "pincer/engine/world/contact_sides.h"
 #include "pincer/engine/world/scratch.h"
@@ -87,6 +88,11 @@ void fillManySides(const WorldModel& model, WorldScratch& scratch, Island& islan
     island.calm = island.calm && island.contacts > kDenseContacts && isCalm(model, c);
   }
   first_side[island.contacts] = sides;
+  for (int n = 0; n < island.contacts; ++n) {
+    const int i = order[n];
+    s.weight[static_cast<std::size_t>(island.work + n)] =
+        weightOf({all + first_side[n], all + first_side[n + 1]}, from_row[i + 1] - from_row[i]);
+  }
 }
 
 bool hasManySides(const IslandScratch& s, const Island& island) {
@@ -105,6 +111,7 @@ void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, I
   const ContactEnds* const all_ends = s.ends.data();
   ContactSides* const all_sides = s.sides.data() + island.work;
   FilledSides* const all_filled = s.filled.data() + island.work;
+  double* const all_weights = s.weight.data() + island.work;
   for (int n = 0; n < island.contacts; ++n) {
     const int i = order[n], rows = from_row[i + 1] - from_row[i];
     const Contact& c = contacts[i];
@@ -117,6 +124,7 @@ void fillSides(const WorldModel& model, WorldScratch& scratch, Island& island, I
       fillSide(model, scratch, c, rows, false, ends.b, b, s.root_inertia, sides[1]);
       if (ends.a >= 0 && ends.a == ends.b) joinSides(rows, sides);
       if (s.sides_per_contact > 2) fillInboardSide(model, scratch, i, island, s, sides);
+      all_weights[n] = weightOf(sides, rows);
     }
     island.settling = std::max(island.settling, c.settling);
     island.calm = island.calm && island.contacts > kDenseContacts && isCalm(model, c);

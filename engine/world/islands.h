@@ -71,6 +71,7 @@ struct IslandScratch {
   std::vector<int> first_row;     // island by island, each from 0: entries 2 Island::work ..
   std::vector<ContactSides> sides;
   std::vector<FilledSides> filled;  // as `sides`
+  std::vector<double> weight;       // as `sides`: weightOf each contact's [1/kg]
   std::int64_t solves = 0;          // of islands, all together
   // Of worlds with trees: blocks are movers after bodies and points, and so is each joint row's own.
   int first_block = 0;            // the first one of those movers

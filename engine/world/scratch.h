@@ -184,6 +184,7 @@ struct LastAttempt {
   bool is_solved = false;        // scratch.contacts are those of an attempt that is done
   bool serves = false;           // `contacts` may be those of this one, too
   bool something_slept = false;  // then
+  bool in_place = false;         // the `kept` ones, which are the first ones of `contacts`, lie there still
   double h = 0, h_last = 0;      // of that attempt [s]
   std::vector<Contact> contacts;
   std::vector<ContactMemory> memories;  // that it began with

@@ -56,13 +56,13 @@ class IslandSolve {
     memory_.hit_operations = kHitOperations * island_.contacts;
     island_.hit_operations = 0;
     if (!island_.has_sides && !(is_grip_ = readGrip(model_, scratch_, order_, grip_))) fillSides();
-    if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
     if (problem_.calm) projectOntoCones(problem_, island_.r);
     island_.rests = problem_.calm && restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result);
     if (island_.rests) {
       island_.operations = 0;
       return;
     }
+    if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
     is_loop_&& scratch_.h > 0 ? solveLoop() : solveOne();
     if (isInexact()) polish();
     if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
@@ -90,6 +90,7 @@ class IslandSolve {
     ContactProblem problem{
         {island.first_row, n + 1}, {island.mu, n}, sides, VectorMap(island.q, island.rows), island.movers,
         island.settling > 0,       island.calm};
+    problem.weight = {s.weight.data() + island.work, n};
     if (island.holds_trees) problem.noise = linkNoise(h);
     if (island.has_many_sides) takeManySides(island, s, problem);
     return problem;

@@ -34,6 +34,14 @@ std::span<Item> runOf(std::span<Item> items, int shape_bits, std::uint64_t first
   return items.subspan(cursor, end - cursor);
 }
 
+// The contacts that are kept so far go where new ones are added.
+void leavePlace(WorldScratch& scratch) {
+  LastAttempt& last = scratch.last;
+  if (!last.in_place) return;
+  last.in_place = false;
+  scratch.contacts.assign(last.contacts.begin(), last.contacts.begin() + static_cast<std::ptrdiff_t>(last.kept));
+}
+
 // Each contact remembers what it did, under its own identity.
 bool remembersTheSame(std::span<const Contact> contacts, std::span<const ContactMemory> then,
                       std::span<const ContactMemory> now) {
@@ -46,6 +54,31 @@ bool remembersTheSame(std::span<const Contact> contacts, std::span<const Contact
 
 std::span<const ContactMemory> memoriesOf(const WorldState& state) {
   return {state.contacts.data(), static_cast<std::size_t>(state.contact_count)};
+}
+
+bool keepUnchanged(const WorldModel& model, const WorldState& state, const BodyPair& pair, WorldScratch& scratch) {
+  LastAttempt& last = scratch.last;
+  if (!last.serves || !scratch.bodies[pair.a].unchanged || !scratch.bodies[pair.b].unchanged) return false;
+  const std::uint64_t first =
+      contactId(model.shape_bits, {SideKind::kBody, 0, pair.a}, {SideKind::kBody, 0, pair.b}, 0);
+  const auto contacts = runOf(std::span<Contact>(last.contacts), model.shape_bits, first, last.contact);
+  const std::size_t so_far = last.in_place ? last.kept : scratch.contacts.size();
+  if (so_far + contacts.size() > scratch.sleep.room) return false;
+  if (contacts.empty() && (last.something_slept || isSomethingAsleep(scratch))) return false;  // it wasn't looked at
+  const auto then = runOf(std::span<const ContactMemory>(last.memories), model.shape_bits, first, last.memory_then);
+  const auto now = runOf(memoriesOf(state), model.shape_bits, first, last.memory_now);
+  if (!remembersTheSame(contacts, then, now)) return false;
+  if (!contacts.empty() && contacts.data() != last.contacts.data() + last.kept) leavePlace(scratch);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    Contact& c = last.in_place ? contacts[k] : scratch.contacts.emplace_back(contacts[k]);
+    c.same_as = static_cast<int>(&contacts[k] - last.contacts.data());
+    c.memory = &now[k];
+    c.settling = now[k].settling;
+    c.rest_speed = 0;
+    c.yields = c.still = false;
+  }
+  last.kept += contacts.size();
+  return true;
 }
 
 }  // namespace
@@ -75,6 +108,7 @@ void beginContacts(const WorldState& state, WorldScratch& scratch) {
   last.serves = (last.is_solved || last.serves) && scratch.h == last.h && state.h_last == last.h_last &&
                 !scratch.flings && !isLimited(scratch);
   last.is_solved = false;
+  last.in_place = last.serves && !isSomethingAsleep(scratch);
   last.kept = last.contact = last.memory_then = last.memory_now = 0;
 }
 
@@ -84,26 +118,17 @@ void forgetContacts(WorldScratch& scratch) {
 }
 
 bool keepContacts(const WorldModel& model, const WorldState& state, const BodyPair& pair, WorldScratch& scratch) {
+  if (keepUnchanged(model, state, pair, scratch)) return true;
+  leavePlace(scratch);
+  return false;
+}
+
+void takeKept(WorldScratch& scratch) {
   LastAttempt& last = scratch.last;
-  if (!last.serves || !scratch.bodies[pair.a].unchanged || !scratch.bodies[pair.b].unchanged) return false;
-  const std::uint64_t first =
-      contactId(model.shape_bits, {SideKind::kBody, 0, pair.a}, {SideKind::kBody, 0, pair.b}, 0);
-  const auto contacts = runOf(std::span<const Contact>(last.contacts), model.shape_bits, first, last.contact);
-  if (scratch.contacts.size() + contacts.size() > scratch.sleep.room) return false;
-  if (contacts.empty() && (last.something_slept || isSomethingAsleep(scratch))) return false;  // it wasn't looked at
-  const auto then = runOf(std::span<const ContactMemory>(last.memories), model.shape_bits, first, last.memory_then);
-  const auto now = runOf(memoriesOf(state), model.shape_bits, first, last.memory_now);
-  if (!remembersTheSame(contacts, then, now)) return false;
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    Contact& c = scratch.contacts.emplace_back(contacts[k]);
-    c.same_as = static_cast<int>(&contacts[k] - last.contacts.data());
-    c.memory = &now[k];
-    c.settling = now[k].settling;
-    c.rest_speed = 0;
-    c.yields = c.still = false;
-  }
-  last.kept += contacts.size();
-  return true;
+  if (!last.in_place) return;
+  last.in_place = false;
+  scratch.contacts.swap(last.contacts);
+  scratch.contacts.erase(scratch.contacts.begin() + static_cast<std::ptrdiff_t>(last.kept), scratch.contacts.end());
 }
 
 void keepRows(double longer, WorldScratch& scratch, int i) {

@@ -2,8 +2,9 @@
 //
 // A pair's contacts, what they ask for, and their rows are a function of where its bodies are and how fast, of what its
 // contacts remember, and of the lengths of this part of the tick and of the last one. Where all of these are what they
-// were, and the solve left the answer as it found it, the contacts are copied. Memory, no heuristic: answers are the
-// same bits with it and without. It pays in heaps: worlds with a broad phase, without hollows and trees.
+// were, and the solve left the answer as it found it, the contacts are copied, or stay in their places as long as no
+// other one comes between them. Memory, no heuristic: answers are the same bits with it and without. It pays in heaps:
+// worlds with a broad phase, without hollows and trees.
 #pragma once
 #include "pincer/engine/world/scratch.h"
 
@@ -30,6 +31,8 @@ void forgetContacts(WorldScratch& scratch);
 
 // Adds the pair's contacts as they were. False where they have to be found.
 bool keepContacts(const WorldModel& model, const WorldState& state, const BodyPair& pair, WorldScratch& scratch);
+// Once all pairs of bodies were looked at, before anything else adds contacts.
+void takeKept(WorldScratch& scratch);
 
 // Fills the rows of contact i, one that was kept; first_row[i + 1] is known.
 void keepRows(double longer, WorldScratch& scratch, int i);
