@@ -183,7 +183,7 @@ void advanceBody(const BodyModel& body, double h, BodyScratch& scratch, BodyStat
   s.X_WI.p += scratch.closing ? Vec3(h * s.v_W) : Vec3((0.5 * h) * (v_old + s.v_W));
   const Vec3 L_mean = scratch.closing ? s.L_W : Vec3(0.5 * (L_old + s.L_W));
   if (!L_mean.isZero(0)) rotateFreely(body.rotation, L_mean, h, s.X_WI.q);
-  if (scratch.touched) scratch.end = {s.v_W, angularVelocity(body.rotation, s.X_WI.q, s.L_W)};
+  scratch.end = scratch.touched ? Motion{s.v_W, angularVelocity(body.rotation, s.X_WI.q, s.L_W)} : scratch.free;
 }
 
 // Way in a tick with the velocities `old` and `now` at its ends, of `now` that share; what lands goes by `now` alone.

@@ -1,7 +1,8 @@
 // far_contacts: contacts that can't close within this part of the tick aren't solved: they would cost time, tie islands
 // together, and blur what residuals are relative to.
 //
-//   phi_0 / h + n . v_free > kFarTimes v      v  the fastest free motion of anything that moves [m/s]
+//   phi_0 / h + n . v_free > v      v  the fastest free motion of all that contacts link, open or not, and
+//                                      kFarTimes that of the two [m/s]
 //
 // Their staying open is looked at after the solve; where one doesn't, it is solved with the others after
 // all. So the answer is that of all contacts.

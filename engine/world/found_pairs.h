@@ -25,7 +25,7 @@ struct PairPlace {
                 o.z(), b.w(), b.x(), b.y(), b.z(), n.x(), n.y(), n.z(), margin};
     static_assert(sizeof last.features == 4 * sizeof(double));
     std::memcpy(&all[18], last.features.data(), sizeof last.features);
-    all[22] = last.carrying;
+    all[22] = last.carrying + 0x1p8 * last.count;
     return all;
   }
 };

@@ -262,15 +262,16 @@ bool askForNothing(const ContactProblem& problem, const double* r, std::span<con
   return kNormalWeight * largest <= kNegligible;
 }
 
-void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
+bool fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
                      double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
-  if (memory.operations_left < 0 || askForNothing(problem, r, order, contacts)) return;
+  if (memory.operations_left < 0 || askForNothing(problem, r, order, contacts)) return false;
   BiasFit fit(pushing, problem, r, nullptr, order, contacts, memory);
   const double asked = fit.gather();
-  if (asked <= kNegligible) return;
+  if (asked <= kNegligible) return false;
   fit.minimise();
-  if (fit.largestLeft() <= kConsistent * asked) return;
+  if (fit.largestLeft() <= kConsistent * asked) return false;
   fit.apply(h, offset_rate, q);
+  return true;
 }
 
 void fitToTurn(double h, double offset_rate, const ContactProblem& problem, const double* r, const double* u, double* q,

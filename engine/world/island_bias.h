@@ -38,9 +38,9 @@ bool askForNothing(const ContactProblem& problem, const double* r, std::span<con
 
 // Where mayContradict(problem): fits bias_C and the stick offsets of the island's contacts, and corrects problem.q
 // through `q`. `r`: impulses of the last tick, or the best that were found in this one; `order`: which of `contacts`
-// the problem's are; `memory` is working memory. Allocates nothing.
+// the problem's are; `memory` is working memory. True if it changed anything. Allocates nothing.
 //   offset_rate  bias_T = offset_rate (offset_T + h v_start_T / 2) [1/s]
-void fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
+bool fitIslandBiases(PushingBy pushing, double h, double offset_rate, const ContactProblem& problem, const double* r,
                      double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory);
 
 // After it, the same of velocities `u` [m/s] at the impulses `r`, of contacts that a tree carries along: joints keep

@@ -106,17 +106,12 @@ void wake(int group, WorldScratch& scratch) {
   PINCER_ASSERT(sleep.bodies >= 0);
 }
 
-// True if something that moves is beside one of the island's bodies, by a contact that isn't of the island
-// because it can't close (far_contacts.h).
-bool isBesideMotion(const WorldModel& model, const WorldScratch& scratch, const Island& island) {
+// True if beside one of the island's bodies something moves, or changes, by a contact that isn't of the island because
+// it can't close (far_contacts.h).
+bool isBesideChange(const WorldModel& model, const WorldScratch& scratch, const Island& island) {
   if (scratch.far_contacts == 0) return false;
-  const auto moves = [&](const Side& side) {
-    if (side.kind == SideKind::kPoint) return true;
-    const auto body = static_cast<std::size_t>(side.index);
-    return (model.bodies[body].dynamic || model.bodies[body].driven) && !scratch.bodies[body].still;
-  };
   for (const Contact& c : scratch.contacts) {
-    if (!c.far || !(moves(c.a) || moves(c.b))) continue;
+    if (!c.far || c.still) continue;
     for (int n = 0; n < island.contacts; ++n) {
       const Contact& own =
           scratch.contacts[static_cast<std::size_t>(scratch.islands.order[static_cast<std::size_t>(island.place + n)])];
@@ -188,7 +183,7 @@ void fallAsleep(const WorldModel& model, const WorldState& state, WorldScratch& 
   if (scratch.still_bodies == 0) return;
   const int before = sleep.bodies;
   for (const Island& island : scratch.islands.islands) {
-    if (isStill(scratch, island) && !isBesideMotion(model, scratch, island)) putToSleep(model, state, island, scratch);
+    if (isStill(scratch, island) && !isBesideChange(model, scratch, island)) putToSleep(model, state, island, scratch);
   }
   if (sleep.bodies == before) return;
   if (before == 0) noteStanding(model, state, scratch);

@@ -235,7 +235,7 @@ void scatter(const IslandScratch& s, const Island& island, const WorldModel& mod
     contacts[i].settling = settling;
     contacts[i].rest_speed = rest_speed;
     contacts[i].yields = island.result.yields;
-    contacts[i].as_asked = contacts[i].as_asked && island.rests;
+    contacts[i].as_asked = contacts[i].as_asked && island.as_asked;
     const int first = from_row[i], rows = from_row[i + 1] - first;
     if (island.r != r) {  // copied
       withRows(rows, [&](auto count) {

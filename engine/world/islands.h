@@ -27,7 +27,7 @@ struct Island {
   bool calm = true;             // all that moves of it is as good as at rest
   bool has_many_sides = false;  // its contacts' are in many_sides
   bool has_sides = true;        // they are filled: of grips, whose solve needs none as a rule, later if at all
-  bool rests = false;           // it was left as it is
+  bool as_asked = true;         // the solve left what contacts ask for as it was
   bool holds_trees = false;     // contacts of it push on trees, whose drives come to rest over many ticks
   // Filled by solveIslands, without a value before.
   // The solver's view: of one among several islands in IslandScratch, of the only

@@ -238,7 +238,6 @@ void predict(const WorldModel& model, const WorldState& state, WorldScratch& scr
                  scratch.points[i]);
   }
   if (!model.joint_groups.empty()) predictJoints(model, scratch);
-  beginContacts(state, scratch);
   scratch.fast_pairs.clear();
 }
 

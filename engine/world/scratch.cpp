@@ -105,6 +105,8 @@ WorldScratch::WorldScratch(const WorldModel& model)
   }
   struck.resize(model.bodies.size());
   pushed.resize(model.bodies.size());
+  linked.resize(model.bodies.size() + 1);
+  linked_speed2.resize(model.bodies.size() + 1);
   pushed_contacts.resize(contact_count);
   if (mayIslandsSleep(model)) makeRoom(kept, contact_count);
   point_inputs.resize(model.points.size());

@@ -23,7 +23,7 @@ namespace pincer::engine {
 
 // Motion of a body or point in this part of the tick.
 struct MoverScratch {
-  // at the start of the tick; at its end, were there no contact; at its end (of bodies: if touched)
+  // at the start of the tick; at its end, were there no contact; at its end
   Motion start, free, end;
   Vec3 impulse_W = Vec3::Zero();  // of all contacts [N s]; of what doesn't move, of those of awake bodies
   bool touched = false;           // some contact pushes on it
@@ -171,7 +171,7 @@ struct KeptMemory {
 // Of a contact, what an attempt at the tick found (tried_impulses.h).
 struct TriedImpulse {
   std::uint64_t id;
-  double per_time;  // 1 over the attempt's length [1/s]; 0: a hit, whose impulse doesn't grow with it
+  double h;  // length of the attempt [s]; 0: a hit, whose impulse doesn't grow with it
   Vec3 impulse_W;
   ContactVector r;
 };
@@ -207,6 +207,8 @@ struct WorldScratch {
   std::vector<PointScratch> points;
   std::vector<Contact> contacts;  // of what is awake, see forEachContact; capacity options.max_contacts
   int far_contacts = 0;           // of them, see far_contacts.h
+  std::vector<int> linked;        // per body, and one more: see Linked there
+  std::vector<double> linked_speed2;
   bool contacts_dropped = false;
   // move so fast that the middle of the tick doesn't show whether they meet; capacity as contacts
   std::vector<ImpactPair> fast_pairs;

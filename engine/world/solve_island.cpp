@@ -57,8 +57,7 @@ class IslandSolve {
     island_.hit_operations = 0;
     if (!island_.has_sides && !(is_grip_ = readGrip(model_, scratch_, order_, grip_))) fillSides();
     if (problem_.calm) projectOntoCones(problem_, island_.r);
-    island_.rests = problem_.calm && restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result);
-    if (island_.rests) {
+    if (problem_.calm && restsAsItIs(problem_, options_, memory_, island_.r, island_.u, island_.result)) {
       island_.operations = 0;
       return;
     }
@@ -71,8 +70,10 @@ class IslandSolve {
       solveAgain(options_);
     }
     island_.hit_operations = kHitOperations * island_.contacts - memory_.hit_operations;
-    if (island_.result.give > 0)
+    if (island_.result.give > 0) {
+      island_.as_asked = false;
       giveWay(scratch_.h, offsetRate(), problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
+    }
     std::int64_t spent = share - reserve - memory_.operations_left;
     if (isLost()) spent += stopOnly(reserve + std::max<std::int64_t>(memory_.operations_left, 0));
     island_.operations = is_limited ? spent : 0;
@@ -237,11 +238,13 @@ class IslandSolve {
   void fit(PushingBy pushing) {
     if (!island_.has_sides && askForNothing(problem_, island_.r, order_, scratch_.contacts)) return;
     fillSides();
-    fitIslandBiases(pushing, scratch_.h, offsetRate(), problem_, island_.r, island_.q, order_, scratch_.contacts,
-                    memory_);
+    if (fitIslandBiases(pushing, scratch_.h, offsetRate(), problem_, island_.r, island_.q, order_, scratch_.contacts,
+                        memory_))
+      island_.as_asked = false;
   }
 
   void fitToTurnOfTrees() {
+    island_.as_asked = false;
     fillSides();
     projectOntoCones(problem_, island_.r);
     weighContacts(problem_, memory_);
@@ -289,6 +292,7 @@ class IslandSolve {
 
   // Gaps and offsets are put right in the ticks to come.
   void dropPushes() {
+    island_.as_asked = false;
     forEachRow([&](Contact& c, int k, int row) {
       const bool is_push = k != kNormalRow || c.bias_C[k] < 0;
       memory_.pushes[static_cast<std::size_t>(row)] = is_push ? c.bias_C[k] : 0;

@@ -298,13 +298,16 @@ class Tick {
     report_.status |= setPartInputs(model_, inputs_, h, left_, state_, scratch_);
     if (isSomethingAsleep(scratch_) && h != model_.options.h) wakeAll(scratch_);
     if (!model_.trees.empty()) startTrees(landings);
+    bool again = false;
     do {
       predict(model_, state_, scratch_);
+      beginContacts(state_, again, scratch_);
       mark(scratch_, Stage::kPredict);
       collideBodies(model_, state_, scratch_);
       mark(scratch_, Stage::kCollideBodies);
       if (!model_.trees.empty()) putJointRows(model_, state_, scratch_);
-      if (source_) source_->addContacts(scratch_);
+      if (source_ && !again) source_->addContacts(scratch_);
+      again = true;
     } while (isSomethingAsleep(scratch_) && wakeTouched(scratch_));
     if (mayHit()) {
       holdBackImpacts(model_, state_, landings && !model_.has_broad_phase && landings_ < kMostLandings, scratch_);

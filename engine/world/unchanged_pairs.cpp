@@ -97,14 +97,14 @@ void noteCourse(const BodyCourse& before, bool lone, const WorldScratch& scratch
   body.unchanged = lone && (scratch.last.is_solved || body.unchanged) && isSame(before, courseOf(body));
 }
 
-void beginContacts(const WorldState& state, WorldScratch& scratch) {
+void beginContacts(const WorldState& state, bool again, WorldScratch& scratch) {
   LastAttempt& last = scratch.last;
   if (last.is_solved) {
     scratch.contacts.swap(last.contacts);
     scratch.first_row.swap(last.first_row);
     scratch.q.swap(last.q);
   }
-  scratch.contacts.clear();
+  std::erase_if(scratch.contacts, [again](const Contact& c) { return !again || c.a.kind != SideKind::kPoint; });
   last.serves = (last.is_solved || last.serves) && scratch.h == last.h && state.h_last == last.h_last &&
                 !scratch.flings && !isLimited(scratch);
   last.is_solved = false;
@@ -132,14 +132,14 @@ void takeKept(WorldScratch& scratch) {
 }
 
 void keepRows(double longer, WorldScratch& scratch, int i) {
-  const Contact& c = scratch.contacts[static_cast<std::size_t>(i)];
+  Contact& c = scratch.contacts[static_cast<std::size_t>(i)];
   const LastAttempt& last = scratch.last;
   const int to = scratch.first_row[static_cast<std::size_t>(i)],
             from = last.first_row[static_cast<std::size_t>(c.same_as)];
   withRows(rowsOf(c.material), [&](auto rows) {
     for (int k = 0; k < rows; ++k) {
       scratch.q[static_cast<std::size_t>(to + k)] = last.q[static_cast<std::size_t>(from + k)];
-      scratch.r[static_cast<std::size_t>(to + k)] = longer * c.memory->r[k];
+      scratch.r[static_cast<std::size_t>(to + k)] = c.r[k] = longer * c.memory->r[k];
     }
   });
   scratch.mu[static_cast<std::size_t>(i)] = c.mu;

@@ -24,8 +24,10 @@ inline BodyCourse courseOf(const BodyScratch& body) {
 //   before  its course before that;   lone  nothing but itself, gravity and forces say where it goes
 void noteCourse(const BodyCourse& before, bool lone, const WorldScratch& scratch, BodyScratch& body);
 
-// Begins without contacts, those of the last attempt put aside.
-void beginContacts(const WorldState& state, WorldScratch& scratch);
+// Begins, once all is predicted, without contacts, those of the last attempt put aside.
+//   again  something woke up: contacts of points stay, for what wakes is where it slept, and a second look, from where
+//          the first one ended, would be another one by round-off
+void beginContacts(const WorldState& state, bool again, WorldScratch& scratch);
 // Begins without contacts, those of the last attempt forgotten.
 void forgetContacts(WorldScratch& scratch);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "pincer/tasks/judge/stress/checks.h"
 #include "pincer/tasks/judge/stress/random_world.h"
@@ -36,17 +37,24 @@ std::string faultOfTick(const StressWorld& world, const grasp::GraspState& state
 constexpr double kCap = 5e-4;    // of one world in kCappedEvery, again: half a tick of 1 kHz [s]
 constexpr int kCappedEvery = 5;  // worlds; chosen: such a world runs up to kMostRuns times more
 
+// How a world is run: none of it may change a bit, but for the budget [s].
+struct RunAs {
+  int threads = 1;
+  double budget = 0;
+  int ticks_per_scratch = std::numeric_limits<int>::max();  // then a new one goes on from the state
+};
+
 // `tick_times` gets this thread's [us].
-WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double budget,
-                     std::vector<double>& tick_times) {
-  StressWorld world(kind, seed, threads);
-  world.model.world.options.solver.budget = budget;
+WorldResult runWorld(StressClass kind, std::uint64_t seed, const RunAs& as, std::vector<double>& tick_times) {
+  StressWorld world(kind, seed, as.threads);
+  world.model.world.options.solver.budget = as.budget;
   grasp::GraspState state = grasp::makeState(world.model, world.starts, world.startDevices());
-  const grasp::ScratchHandle scratch = grasp::makeScratch(world.model);
+  grasp::ScratchHandle scratch = grasp::makeScratch(world.model);
   const double energy = totalEnergy(world.model.world, state.world);
   WorldResult result;
   for (; result.ticks < world.ticks; ++result.ticks) {
     const auto inputs = world.nextInputs();
+    if ((result.ticks + 1) % as.ticks_per_scratch == 0) scratch = grasp::makeScratch(world.model);
     const double begin = threadCpuSeconds();
     const engine::StepReport report = grasp::step(world.model, state, *scratch, inputs, {}, {}, world.controls());
     tick_times.push_back(1e6 * (threadCpuSeconds() - begin));
@@ -66,10 +74,10 @@ WorldResult runWorld(StressClass kind, std::uint64_t seed, int threads, double b
 WorldResult runCapped(StressClass kind, std::uint64_t seed, std::vector<double>& tick_times) {
   constexpr int kMostRuns = 3;  // of which a tick's least time counts; chosen: an interruption rarely comes thrice
   std::vector<double> least;
-  const WorldResult result = runWorld(kind, seed, 1, kCap, least);
+  const WorldResult result = runWorld(kind, seed, {.budget = kCap}, least);
   for (int n = 1; n<kMostRuns&& * std::max_element(least.begin(), least.end())> 1e6 * kCap; ++n) {
     std::vector<double> times;
-    runWorld(kind, seed, 1, kCap, times);
+    runWorld(kind, seed, {.budget = kCap}, times);
     for (std::size_t i = 0; i < least.size(); ++i) least[i] = std::min(least[i], times[i]);
   }
   tick_times.insert(tick_times.end(), least.begin(), least.end());
@@ -77,10 +85,11 @@ WorldResult runCapped(StressClass kind, std::uint64_t seed, std::vector<double>&
 }
 
 std::vector<Record> stressClass(StressClass kind, const StressOptions& options, MeasureContext& context) {
-  constexpr int kThreadsEvery = 20;  // worlds; chosen: such a world runs once more, on two threads
+  constexpr int kAgainEvery = 20;      // worlds; chosen: such a world runs twice more, on two threads and forgetfully
+  constexpr int kTicksPerScratch = 3;  // chosen: new memory costs some ticks
   std::vector<Record> failures;
   std::vector<double> tick_times, capped_times, untimed;
-  int ticks = 0, flagged = 0, differing = 0, capped = 0, capped_failed = 0;
+  int ticks = 0, flagged = 0, differing = 0, remembering = 0, capped = 0, capped_failed = 0;
   const auto note = [&failures](const std::string& fault) {
     constexpr std::size_t kShown = 8;  // faults by name; the last one counts all further ones
     if (!fault.empty() && failures.size() < kShown)
@@ -91,10 +100,13 @@ std::vector<Record> stressClass(StressClass kind, const StressOptions& options, 
   for (int i = 0; i < options.seeds && !context.interrupted(); ++i) {
     context.progress(static_cast<double>(i) / options.seeds);
     const std::uint64_t seed = options.first_seed + static_cast<std::uint64_t>(i);
-    const WorldResult result = runWorld(kind, seed, 1, 0, tick_times);
+    const WorldResult result = runWorld(kind, seed, {}, tick_times);
     ticks += result.ticks;
     flagged += result.flagged;
-    if (i % kThreadsEvery == 0) differing += runWorld(kind, seed, 2, 0, untimed).hash != result.hash;
+    if (i % kAgainEvery == 0) {
+      differing += runWorld(kind, seed, {.threads = 2}, untimed).hash != result.hash;
+      remembering += runWorld(kind, seed, {.ticks_per_scratch = kTicksPerScratch}, untimed).hash != result.hash;
+    }
     note(result.fault);
     if (i % kCappedEvery != 0) continue;
     ++capped;
@@ -104,7 +116,8 @@ std::vector<Record> stressClass(StressClass kind, const StressOptions& options, 
   for (const Record& record : failures) failed += record.value;
   std::vector<Record> records = {
       exactly(fmt::format("unflagged failures in {} worlds", options.seeds), failed, "-", 0),
-      exactly(fmt::format("other bits on two threads, of every {}th world", kThreadsEvery), differing, "-", 0),
+      exactly(fmt::format("other bits on two threads, of every {}th world", kAgainEvery), differing, "-", 0),
+      exactly(fmt::format("other bits from states alone, of every {}th world", kAgainEvery), remembering, "-", 0),
       unbounded("flagged ticks", ticks > 0 ? 100.0 * flagged / ticks : 0, "%")};
   for (const auto& [name, q] :
        {std::pair("median", 0.5), std::pair("p99", 0.99), std::pair("p99.9", 0.999), std::pair("longest", 1.0)})

@@ -13,6 +13,7 @@
 //             checks; shown with its longest ticks: where the tick may not be cut any more, needles can sink into the
 //             floor (seeds 61, 196, 296, 921 of inertia), three worlds in a hundred at most
 //   threads   one world in twenty ends with the same bits where two threads solve
+//   states    and so does it where new working memory goes on from the state after every few ticks
 // A tick that the engine flags (StepStatus) may miss the law, nothing else. Every failure
 // is named with its seed, which repeats it.
 #pragma once

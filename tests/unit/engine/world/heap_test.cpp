@@ -85,11 +85,14 @@ TEST(Heap, OfAHundredBallsComesToRestSolved) {
 // Sweeps along the ways of the last two needed hundreds while it fell, and 40 were made: a fifth of
 // the ticks of the first second were flagged.
 TEST(Heap, OfAHundredBallsIsSolvedWhileItFalls) {
-  Crate crate = crateOf(100, 0);
-  WorldScratch scratch(crate.model);
+  constexpr int kHeaps = 5, kTicks = 1000;  // one heap has 2 to 30, as it falls out
   int flagged = 0;
-  for (int tick = 0; tick < 1000; ++tick) flagged += step(crate.model, crate.state, scratch).status != kStepOk;
-  EXPECT_LE(flagged, 20);
+  for (int n = 0; n < kHeaps; ++n) {
+    Crate crate = crateOf(100, 0, 5, n);
+    WorldScratch scratch(crate.model);
+    for (int tick = 0; tick < kTicks; ++tick) flagged += step(crate.model, crate.state, scratch).status != kStepOk;
+  }
+  EXPECT_LE(flagged, 15 * kHeaps);
 }
 
 // Newton's method fails on such a heap in most ticks while it falls; all that came after it factorised, 40 times per
