@@ -18,12 +18,13 @@ namespace {
 constexpr double kInside = -1e-9;  // of the cone's radius: what is further in sticks
 // contradictions between biases below this are below the solver's tolerance [m/s]
 constexpr double kNegligible = 1e-11;
-constexpr double kConverged = 1e-10;             // of |A^T b|, squared: 1e-5
-constexpr double kConsistent = 1e-6;             // of what is asked for: what is left then is the ridge's
-constexpr int kMostSteps = 40;                   // of conjugate gradients
-constexpr int kFewFitted = 200;                  // for which so many may be taken; beyond,
-constexpr int kFitVisits = 1500;                 // of contacts, but
-constexpr int kFewestSteps = 3;                  // however many contacts there are
+constexpr double kConverged = 1e-10;  // of |A^T b|, squared: 1e-5
+constexpr double kConsistent = 1e-6;  // of what is asked for: what is left then is the ridge's
+constexpr double kMostLeft = 1.01;    // of all that is asked for, squared: a least square is less, but for round-off
+constexpr int kMostSteps = 40;        // of conjugate gradients
+constexpr int kFewFitted = 200;       // for which so many may be taken; beyond,
+constexpr int kFitVisits = 1500;      // of contacts, but
+constexpr int kFewestSteps = 3;       // however many contacts there are
 constexpr std::int64_t kPerContactFitted = 200;  // multiplications of a step
 
 double unitOfRow(const Contact& c, int k) { return k >= kTorsionRow ? radiusOf(c, k) : 1; }
@@ -143,6 +144,7 @@ class BiasFit {
     for (int row = 0; row < rows_; ++row) largest = std::max(largest, std::abs(b_[row]));
     return largest;
   }
+  double squaredLeft() const { return dot(b_, b_, rows_); }
   // And of what is asked for, which b weighs.
   double largestSpeedLeft() const {
     double largest = 0;
@@ -266,10 +268,11 @@ bool fitIslandBiases(PushingBy pushing, double h, double offset_rate, const Cont
                      double* q, std::span<const int> order, std::vector<Contact>& contacts, SolverScratch& memory) {
   if (memory.operations_left < 0 || askForNothing(problem, r, order, contacts)) return false;
   BiasFit fit(pushing, problem, r, nullptr, order, contacts, memory);
-  const double asked = fit.gather();
+  const double asked = fit.gather(), all_asked = fit.squaredLeft();
   if (asked <= kNegligible) return false;
   fit.minimise();
   if (fit.largestLeft() <= kConsistent * asked) return false;
+  if (!(fit.squaredLeft() <= kMostLeft * all_asked)) return false;
   fit.apply(h, offset_rate, q);
   return true;
 }

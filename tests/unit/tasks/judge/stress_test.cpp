@@ -5,6 +5,7 @@
 
 #include "pincer/engine/world/scratch.h"
 #include "pincer/tasks/judge/stress/checks.h"
+#include "pincer/tasks/judge/stress/random_world.h"
 
 namespace pincer::tasks {
 namespace {
@@ -47,7 +48,26 @@ TEST(Stress, WorldsThatOnceFailedHold) {
   for (const std::uint64_t seed : {99, 161}) run("stress/hit", seed);  // a second attempt turned them by round-off
   // fingers that wake what they touch looked at it twice
   for (const std::uint64_t seed : {22, 58, 100, 195}) run("stress/coarse", seed);
-  for (const std::uint64_t seed : {212, 409, 522, 740, 911, 5511, 7757}) run("stress/overlap", seed);
+  for (const std::uint64_t seed : {212, 409, 522, 740, 911, 1366, 5511, 7757}) run("stress/overlap", seed);
+}
+
+// Walls laid without any overlap rose by 1e-4 of their energy where a budget cut every solve.
+TEST(Stress, WallsThatABudgetCutsGainNoEnergy) {
+  for (const std::uint64_t seed : {681, 731, 841, 856, 921, 1221}) {
+    StressWorld world(StressClass::kWalls, seed, 1);
+    world.model.world.options.solver.budget = 5e-4;
+    grasp::GraspState state = grasp::makeState(world.model, world.starts, world.startDevices());
+    const grasp::ScratchHandle scratch = grasp::makeScratch(world.model);
+    const double most = totalEnergy(world.model.world, state.world) + world.allowed_lift;
+    int flagged = 0;
+    for (int tick = 0; tick < world.ticks; ++tick) {
+      const auto inputs = world.nextInputs();
+      const auto report = grasp::step(world.model, state, *scratch, inputs, {}, {}, world.controls());
+      flagged += report.status != engine::kStepOk;
+      ASSERT_LE(totalEnergy(world.model.world, state.world), most * (1 + 1e-5)) << seed << ", " << tick;  // as `stress`
+    }
+    EXPECT_GT(flagged, world.ticks / 2) << seed;  // or nothing was cut
+  }
 }
 
 // The checks see what they are there for.
