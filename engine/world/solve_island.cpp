@@ -291,8 +291,8 @@ class IslandSolve {
     return operations - memory_.operations_left;
   }
 
-  // Scales the impulses of a solve that was cut until they do no work, by the mean of the velocities at both ends of the
-  // tick: they would lift bricks that stand, by round a micrometre a tick.
+  // Scales the impulses of a solve that was cut until they do no work, by the mean of the velocities at both ends of
+  // the tick: they would lift bricks that stand, by round a micrometre a tick.
   //   r . (v_start + v_free + W r) / 2 <= 0
   void doNoWork() {
     double free_work = 0, response = 0;  // twice each
