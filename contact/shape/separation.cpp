@@ -126,7 +126,7 @@ class Search {
       if (!(best_.gap > before + (round_ ? kRoughly : kGapRounding) * size_)) break;
     }
     if (isProvedOnFace()) return;
-    if (best_.gap > 0 && !round_) tryNearestPoints(best_.n, kInfinity);  // of round ones Newton's method finds them
+    if (best_.gap > 0) tryNearestPoints(best_.n, kInfinity);
     finish();
   }
   bool isProvedOnFace() {
