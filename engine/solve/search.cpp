@@ -32,8 +32,7 @@ constexpr std::int64_t kPerContactLooked = 150;         // multiplications
 constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 ms
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
 constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
-constexpr int kHitSolves = 6;                           // that share what a tick's hits may take
-constexpr int kPolishRounds = 3;                        // of what is quiet, on to round-off, by kPolishEpsilon
+constexpr int kHitSolves = 6, kPolishRounds = 3;        // that share a tick's hits; of what is quiet, to round-off
 constexpr double kPolishEpsilon = 1e-4, kQuiet = 1e-3;  // quiet: slip of what is about to rest, of the problem's speeds
 constexpr double kNear = 100;                           // of what is enough: a start that is nearer settles
 
@@ -240,6 +239,7 @@ class Search {
         patience = longest;
       else if (epsilon == kLeastEpsilon || !(isPatient() || error_.speed < kStillFading * last_error))
         --patience;
+      if (!settles_ && patience < longest && giveWay(give)) return;  // it won't last, however small it gets
       if (patience == 0) {
         if (isEnough() || giveWay(give) || ++failures > kMostFailures * times()) return;
         goAround(round, std::min(epsilon, kFirstDescent), failures);

@@ -177,7 +177,7 @@ Crate fallInto(double half, const contact::Shape& shape, int count, std::uint64_
 // Slips of two faces that stick were turned back a little less than to a rigid motion in every tick, where their places
 // weren't in one plane to the nanometre: nothing moved any more, and nothing slept.
 TEST(Heap, OfCubesSleeps) {
-  for (const std::uint64_t seed : {2, 5}) {
+  for (const std::uint64_t seed : {2, 8}) {
     Crate crate = fallInto(0.035, contact::Box{Vec3::Constant(0.01)}, 16, seed);
     WorldScratch scratch(crate.model);
     bool asleep = false;
