@@ -108,7 +108,7 @@ void beginContacts(const WorldState& state, bool again, WorldScratch& scratch) {
   last.serves = (last.is_solved || last.serves) && scratch.h == last.h && state.h_last == last.h_last &&
                 !scratch.flings && !isLimited(scratch);
   last.is_solved = false;
-  last.in_place = last.serves && !isSomethingAsleep(scratch);
+  last.in_place = last.serves && !again && !isSomethingAsleep(scratch);
   last.kept = last.contact = last.memory_then = last.memory_now = 0;
 }
 

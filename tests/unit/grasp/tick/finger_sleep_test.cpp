@@ -1,6 +1,8 @@
 // A held object sleeps, with what the fingers feel unchanged, and wakes when a finger or its force moves.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "pincer/grasp/tick/scratch.h"
 #include "pincer/tests/support/worlds.h"
 
@@ -67,6 +69,41 @@ TEST(FingerSleep, WhatItDoesntTouchSleepsWithTheSameBits) {
   EXPECT_GT(asleep[3], 300);  // before the touch and after it
   EXPECT_GT(asleep[2], 100);  // one is pushed
   EXPECT_GT(asleep[1], 100);  // against another
+}
+
+// Boxes on a plank, all one island of a world with a broad phase: the finger that wakes it touches in that tick.
+TEST(FingerSleep, WhatWakesAllOfALargeWorldTouchesItAtOnce) {
+  constexpr int kBoxes = 20;
+  const auto loadedPlank = [](bool sleep) {
+    engine::WorldOptions options;
+    options.sleep = sleep;
+    engine::WorldBuilder builder(options);
+    builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+    builder.addBody({"plank", contact::Box{{0.5, 0.05, 0.01}}, true, 1, {}});
+    std::vector<engine::BodyStart> starts{tests::startAt(Vec3::Zero()), tests::startAt({0, 0, 0.01})};
+    for (int k = 0; k < kBoxes; ++k) {
+      builder.addBody({"box", contact::Box{{0.01, 0.02, 0.01}}, true, 0.05, {}});
+      starts.push_back(tests::startAt({-0.45 + 0.04 * k, 0, 0.03}));
+    }
+    tests::GraspWorld w{buildGrasp(builder, {tests::softFinger("finger")}), {}};
+    w.state = makeState(w.model, starts, {Vec3(-0.5, 0, 0.03)});
+    return w;
+  };
+  tests::GraspWorld w = loadedPlank(true), other = loadedPlank(false);
+  GraspScratch scratch(w.model), other_scratch(other.model);
+  FingerInput input;
+  int asleep = 0, wakes = 0;
+  for (int i = 0; i < 600; ++i) {
+    input.p_WF = Vec3(-0.5 + 1e-4 * std::max(0, i - 100), 0, 0.03);
+    const bool slept = scratch.world.sleep.bodies > kBoxes;
+    step(w.model, w.state, scratch, {&input, 1});
+    step(other.model, other.state, other_scratch, {&input, 1});
+    ASSERT_EQ(engine::hashOf(w.state.world), engine::hashOf(other.state.world)) << i;
+    asleep += slept;
+    wakes += slept && scratch.world.sleep.bodies == 0;
+  }
+  EXPECT_GT(asleep, 50);
+  EXPECT_GT(wakes, 0);
 }
 
 }  // namespace
