@@ -303,10 +303,10 @@ class IslandSolve {
     });
     if (free_work + response <= 0) return;
     const double share = free_work < 0 ? -free_work / response : 0;
-    for (int row = 0; row < island_.rows; ++row) {
-      island_.r[row] *= share;
-      island_.u[row] = island_.q[row] + share * (island_.u[row] - island_.q[row]);
-    }
+    for (int row = 0; row < island_.rows; ++row) island_.r[row] *= share;
+    const ContactError error = errorOf(problem_, island_.r, memory_, island_.u);
+    island_.result.residual = error.residual;
+    island_.result.error = error.speed;
   }
 
   // Gaps and offsets are put right in the ticks to come.
