@@ -17,11 +17,11 @@ constexpr int kTorsionRow = kPointRows, kRollingRow = 4;  // about n; the first 
 // of one contact; rows that it doesn't have are 0
 using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign>;
 
-// Methods that are tried for up to sixty contacts where Newton's method fails.
+// What is tried for up to sixty contacts where Newton's method fails.
 enum class SolverEffort : std::uint8_t {
-  kRounds,  // Newton's method with a proximal term
-  kInside,  // of less than a dozen: from the interior, then by rounds
-  kAll,     // and what takes a millisecond
+  kShort,   // a short search
+  kInside,  // then an interior point
+  kAll,     // then a long search
 };
 
 struct SolverOptions {

@@ -65,16 +65,10 @@ void solveContacts(const ContactProblem& problem, const SolverOptions& options, 
   const bool is_solved = solveSmallProblem(problem, options, r, u, result);
   spend(kPerSmallStep * (1 + result.iterations), scratch);
   if (is_solved) return;
-  const bool is_few = problem.contactCount() <= kFewContacts;
-  if (is_few) solveFew(problem, options, scratch, r, u, result);
-  const bool is_short =
-      !result.converged && !result.yields && options.effort == SolverEffort::kAll && scratch.operations_left >= 0;
-  const bool squeezes = is_few && result.yields && isSqueezed(problem, scratch.weight, r);
-  if (!is_few || squeezes || is_short) {
-    const SolveResult few = result;
+  if (problem.contactCount() > kFewContacts) {
     result = searchImpulses(problem, options, scratch, r, u);
-    result.iterations += few.iterations;
-    if (is_few) result.start = few.start;
+  } else {
+    solveFew(problem, options, scratch, r, u, result);
   }
   settleEnergy(problem, scratch, r, u, result);
 }

@@ -8,7 +8,8 @@
 //   up to three contacts of one to three movers   Newton's method, with all sizes known
 //                                                 to the compiler (small_problem.h)
 //   up to kFewContacts, all stick or are open      stuck_contacts.h, in one step
-//   up to kFewContacts                            few_contacts.h; what it leaves unsolved goes on as if it were more
+//   up to kFewContacts                            Newton's method, then as if they were more, with
+//                                                 an interior point in between (few_contacts.h)
 //   between balls, or the movers' matrix doesn't factorise cheaply (heaps)   sweeps.h
 //   more                                          far: what slides by sweeps, then rounds with a frozen
 //                                                 shift (descents);  near: rounds, epsilon by how easily

@@ -1,16 +1,14 @@
 // few_contacts: up to kFewContacts contacts, to the tolerance, cheapest method first.
 //
-//   semi-smooth Newton (Alart-Curnier) -> interior point, then Newton with a proximal term -> projected Gauss-Seidel
-//   with exact local solves -> best iterate, from which search.h goes on.
-//   Newton's method finishes what the others begin.
-// Of a dozen contacts and more the proximal term comes first, for an interior point costs as much as all else.
+//   Newton's method (newton.h)
+//   a short search (search.h), which finds most of what that misses for a tenth of what an interior point costs
+//   an interior point, Newton's method and a short search from where it ends (interior_point.h)
+//   contacts give way, if they may
+//   a long search
 //
 // Contacts that slip by 1e-5 of the problem's speeds seem to contradict each other: friction follows the direction of
-// the slip, which errors of 1e-6 turn. The interior point goes down to 1e-12, by equations contact by contact, and the
-// proximal term is as small as that slip asks for. What fails then gives way, if it may.
-// A point between walls, if all else failed, goes to point_problem.h. Decision 4 says why these stay:
-// from no impulse at all they solve what the search doesn't (contacts on which almost everything slides,
-// of mass ratios of a thousand), to 1e-10.
+// the slip, which errors of 1e-6 turn. The interior point goes down to 1e-12, by equations contact by contact.
+// A point between walls, if all that failed, goes to point_problem.h. Decision 4 says why the interior point stays.
 //
 // Never throws, allocates or prints; deterministic.
 #pragma once
@@ -25,8 +23,8 @@ constexpr int kManyContacts = 12;
 constexpr int kFewContacts = 60;    // beyond, what needs many factorisations costs milliseconds
 constexpr int kDenseContacts = 40;  // beyond, a dense matrix costs more than any graph of movers that fits
 
-// Solves `problem`, of at most kFewContacts, from `r` (in the cones) whose velocities `u` and residual `start` are; as
-// solveContacts, but that impulses may squeeze (squeeze.h) where soft contacts weren't solved; result.yields.
+// Solves `problem`, of at most kFewContacts, its contacts weighed (residual.h), from `r` (in the cones) whose velocities
+// `u` and residual `start` are; as solveContacts.
 void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch,
                       double* r, double* u, SolveResult& result);
 

@@ -41,7 +41,7 @@ class CentralPath {
     return defect <= fraction * size_ && meanGap(0) <= fraction * size_ * size_;
   }
 
-  // False where the path has come to its end: rounds (newton.h) finish what it began.
+  // False where the path has come to its end: Newton's method and the search finish what it began.
   bool comesNearer() {
     const double gap = meanGap(0);
     if (gap < kNearer * least_gap_) {

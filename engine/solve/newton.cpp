@@ -13,18 +13,13 @@ namespace {
 constexpr double kMoversEpsilon = 1e-6;  // redundant contacts share their load by the round-off of their gaps over this
 constexpr double kCorrected = 1e-8;      // of Newton's equations: what epsilon may leave of them
 constexpr int kMostCorrections = 3;      // by the same factors
-// of a first round: small enough that a few rounds do, large enough for the equations to be tame. Less after a round
-// that went easily, for slow slip asks for as little; more after one that failed
-constexpr double kProximalEpsilon = 1e-4, kLessEpsilon = 0.2, kLeastEpsilon = 1e-6;
-constexpr int kEasySteps = 4;
-constexpr double kRoundDecrease = 1e-6;  // of |Phi|^2 in a round
 // of contacts that give way: as long as a round isn't solved, more
 constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;
-constexpr int kStepsPerGivingRound = 12;
+constexpr int kStepsPerRound = 12;
 // of contacts that are soft: the first with which Newton's method gets there
 constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
 constexpr double kFadesStill = 0.5;  // of the give of the round before
-// steps, or rounds, without a residual half as large as the best before, after which it won't come
+// steps without a residual half as large as the best before, after which it won't come
 constexpr int kPatience = 5;
 
 // Phi of one contact, y, and how the contact acts.
@@ -206,6 +201,15 @@ void searchLine(const ScaledProblem& problem, const Centre& centre, const Newton
   }
 }
 
+// True if `current` is the answer with u + epsilon (r - r_c); `u` is working memory.
+bool isSolved(const ScaledProblem& problem, const Centre& centre, double tolerance, const Iterate& current, double* u) {
+  Iterate given{current.r, u};
+  for (int row = 0; row < problem.rowCount(); ++row)
+    u[row] = current.u[row] + centre.epsilon * (current.r[row] - centre.r[row]);
+  judge(problem, given);
+  return given.residual <= tolerance;
+}
+
 // Steps of Newton's method; the two iterates swap as they go.
 struct Steps {
   const ScaledProblem& problem;
@@ -227,41 +231,15 @@ struct Steps {
     return true;
   }
 
-  enum class End : unsigned char { kSolved, kSpent, kSingular };
-  template <class IsSolved>
-  End round(const Centre& centre, int most, const IsSolved& is_solved) {
-    for (int n = 0; n < most; ++n) {
-      if (!step(centre)) return End::kSingular;
-      if (is_solved()) return End::kSolved;
+  // True if a few of them find the round's answer.
+  bool solve(const Centre& centre) {
+    for (int n = 0; n < kStepsPerRound; ++n) {
+      if (!step(centre)) return false;
+      if (isSolved(problem, centre, tolerance, current, trial.u)) return true;
     }
-    return End::kSpent;
-  }
-};
-
-// Notes residuals; true once kPatience of them weren't half as large as the best before.
-class Stall {
- public:
-  explicit Stall(double residual) : best_(residual) {}
-  bool isAt(double residual) {
-    if (!(residual < 0.5 * best_)) return --left_ == 0;
-    best_ = residual;
-    left_ = kPatience;
     return false;
   }
-
- private:
-  double best_;
-  int left_ = kPatience;
 };
-
-// True if `current` is the answer with u + epsilon (r - r_c); `u` is working memory.
-bool isSolved(const ScaledProblem& problem, const Centre& centre, double tolerance, const Iterate& current, double* u) {
-  Iterate given{current.r, u};
-  for (int row = 0; row < problem.rowCount(); ++row)
-    u[row] = current.u[row] + centre.epsilon * (current.r[row] - centre.r[row]);
-  judge(problem, given);
-  return given.residual <= tolerance;
-}
 
 // Fills scratch.give; returns the largest.
 double keepGive(const ScaledProblem& problem, const Centre& centre, const Iterate& current, SolverScratch& scratch) {
@@ -289,32 +267,13 @@ void addGive(const ScaledProblem& problem, const SolverScratch& scratch, Iterate
 int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations, ContactEquations& equations,
                   SolverScratch& scratch, Iterate& current, Iterate& trial) {
   Steps steps{problem, tolerance, equations, scratch, current, trial};
-  Stall stall(current.residual);
-  while (steps.count < iterations && !steps.isDone() && steps.step({}) && !stall.isAt(current.residual)) {
-  }
-  return steps.count;
-}
-
-int iterateProximally(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
-                      SolverScratch& scratch, Iterate& current, Iterate& trial) {
-  double* const r_c = scratch.shift_centre.data();
-  double epsilon = kProximalEpsilon;
-  Steps steps{problem, tolerance, equations, scratch, current, trial};
-  Stall stall(current.residual);
-  for (int round = 0; round < rounds && !steps.isDone(); ++round) {
-    std::copy(current.r, current.r + problem.rowCount(), r_c);
-    const Centre centre{r_c, epsilon};
-    const double enough = kRoundDecrease * merit(problem, centre, current);
-    const int before = steps.count;
-    const Steps::End end = steps.round(centre, kMostRoundSteps, [&] {
-      return current.residual <= tolerance || merit(problem, centre, current) <= enough;
-    });
-    if (end == Steps::End::kSingular) break;
-    if (end == Steps::End::kSpent)
-      epsilon /= kLessEpsilon;
-    else if (steps.count - before <= kEasySteps)
-      epsilon = std::max(kLessEpsilon * epsilon, kLeastEpsilon);
-    if (stall.isAt(current.residual)) break;
+  double best = current.residual;
+  int patience = kPatience;
+  while (patience > 0 && steps.count < iterations && !steps.isDone() && steps.step({})) {
+    --patience;
+    if (!(current.residual < 0.5 * best)) continue;
+    best = current.residual;
+    patience = kPatience;
   }
   return steps.count;
 }
@@ -327,8 +286,7 @@ int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, Co
   for (int round = 0; round < rounds && scratch.operations_left >= 0; ++round) {
     std::copy(current.r, current.r + problem.rowCount(), r_c);
     const Centre centre{r_c, epsilon};
-    const auto is_solved = [&] { return isSolved(problem, centre, tolerance, current, trial.u); };
-    if (steps.round(centre, kStepsPerGivingRound, is_solved) == Steps::End::kSolved) {
+    if (steps.solve(centre)) {
       const double before = give;
       give = keepGive(problem, centre, current, scratch);
       if (give <= largest && !(give < kFadesStill * before)) break;
@@ -353,9 +311,7 @@ bool iterateSoftly(const ScaledProblem& problem, double tolerance, ContactEquati
   for (const double epsilon : kSoftEpsilons) {
     std::fill(current.r, current.r + problem.rowCount(), 0.0);
     evaluate(problem, current);
-    const Centre centre{r_c, epsilon};
-    const auto is_solved = [&] { return isSolved(problem, centre, tolerance, current, trial.u); };
-    is_soft = newton.round(centre, kStepsPerGivingRound, is_solved) == Steps::End::kSolved;
+    is_soft = newton.solve({r_c, epsilon});
     if (is_soft) break;
   }
   steps += newton.count;

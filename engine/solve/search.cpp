@@ -30,6 +30,8 @@ constexpr int kSweepsAtATime = 16;    // they cost two steps
 constexpr int kProductsPerRoundContact = 3;             // a row of balls in a groove takes one
 constexpr std::int64_t kPerContactLooked = 150;         // multiplications
 constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 ms
+// Of few contacts: as many as find 98 in a hundred of what is found at all; of what is looked for once more.
+constexpr int kShortSteps = 80, kInsideSteps = 160, kLongSteps = 480;
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
 constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
 constexpr int kHitSolves = 6, kPolishRounds = 3;        // that share a tick's hits; of what is quiet, to round-off
@@ -98,8 +100,9 @@ class Search {
     return std::max(kShareOfSlip * slip_, std::clamp(kShareOfSlow * slip_, finest(), options_.accuracy));
   }
   // Of a round's own, at most [m/s].
-  double left() const { return kLeft * std::max(limit(), options_.tolerance * referenceSpeed(problem_)); }
+  double left() const { return kLeft * std::max(isFew() ? 0 : limit(), options_.tolerance * referenceSpeed(problem_)); }
   bool isEnough() const { return isWithinTolerance() || error_.speed <= limit(); }
+  bool isAtGoal() const { return isFew() ? isWithinTolerance() : isEnough(); }
   bool squeezes(const std::vector<double>& r) const { return isSqueezed(problem_, scratch_.weight, r.data()); }
   bool isQuiet() const { return slip_ <= kQuiet * referenceSpeed(problem_); }
 
@@ -134,8 +137,14 @@ class Search {
 
   // Bodies that move so fast as in a hit aren't worth the same share of their speed:
   // a tick's work follows from its contacts.
-  bool isHit() const { return options_.accuracy > 0 && referenceSpeed(problem_) > kHitSpeed * options_.accuracy; }
+  bool isHit() const {
+    return !isFew() && options_.accuracy > 0 && referenceSpeed(problem_) > kHitSpeed * options_.accuracy;
+  }
+  static int stepsOf(SolverEffort effort) {
+    return effort == SolverEffort::kShort ? kShortSteps : effort == SolverEffort::kInside ? kInsideSteps : kLongSteps;
+  }
   std::int64_t mostOperations(const MoverMatrix& matrix) const {
+    if (isFew() && !isPatient()) return stepsOf(options_.effort) * matrix.costOfFactorisation();
     const std::int64_t most = times() * std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
     return (isHit() ? std::min(most, scratch_.hit_operations / kHitSolves) : most) / scratch_.haste;
   }
@@ -145,7 +154,7 @@ class Search {
     if (isEnough()) return polish(round);
     approach(round);
     proceed(round);
-    if (isEnough() && result_.give == 0 && isQuiet() && settles_) polish(round);
+    if (isEnough() && result_.give == 0 && (isFew() || (isQuiet() && settles_))) polish(round);
     conclude();
     // what is new has no impulse yet
     if (scratch_.operations_left < 0 && result_.method == SolveMethod::kNotConverged) return sweep();
@@ -223,10 +232,11 @@ class Search {
     double give = std::numeric_limits<double>::infinity();
     const int longest = kPatience * times();
     int patience = longest, failures = 0;
-    while (!isEnough() && !isSpent()) {
+    while (!isAtGoal() && !isSpent()) {
       const int before = result_.iterations, most = kMostRoundSteps * (1 + failures);  // or the same would fail again
       const double least = std::max(left(), kLeft * error_.speed);
       if (!round.solve(Shift::kFollows, {epsilon, least, stepsOf(most)}, result_.iterations)) {
+        if (isEnough()) return;
         epsilon = std::min(kMostEpsilon, kHarder * epsilon);
         if (++failures > kMostFailures * times()) return;
         goAround(round, std::min(epsilon, kFirstDescent), failures);

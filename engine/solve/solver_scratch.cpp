@@ -18,7 +18,7 @@ void sizeForFew(int contacts, int movers, int movers_per_contact, SolverScratch&
   s.max_contacts = contacts;
   s.dense_contacts = std::min(contacts, kDenseContacts);
   for (std::vector<double>* matrix : {&s.W, &s.jacobian}) matrix->resize(m * m);
-  for (std::vector<double>* vector : {&s.q, &s.step, &s.response, &s.shift_centre}) vector->resize(m);
+  for (std::vector<double>* vector : {&s.q, &s.step, &s.response, &s.shift_centre, &s.few_r}) vector->resize(m);
   for (std::vector<double>& vector : s.impulses) vector.resize(m);
   for (std::vector<double>& vector : s.velocities) vector.resize(m);
   s.rhs.resize(std::max(m, kMoverFreedoms * static_cast<std::size_t>(movers)));

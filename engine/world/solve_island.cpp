@@ -115,7 +115,7 @@ class IslandSolve {
   // out. If that fails, what contacts ask for is fitted to the impulses found, and they give way.
   void solveOne() {
     const bool may_jam = island_.contacts <= kFewContacts && scratch_.h > 0;
-    solve(may_jam ? trying(SolverEffort::kRounds) : options_);
+    solve(may_jam ? trying(SolverEffort::kShort) : options_);
     if (pushesInVain()) solveWithoutPushes();
     if (may_jam && !isAnswered()) solveAgain(options_);
     if (isAnswered() || !(scratch_.h > 0) || memory_.operations_left < 0) return;
