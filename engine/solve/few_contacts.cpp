@@ -130,13 +130,13 @@ class ScaledSolve {
 // One way after another; r, u and the result are those of the last one, or of a better one before it.
 class FewContacts {
  public:
-  FewContacts(const ContactProblem& problem, const SolverOptions& options, EquationForm form, SolverScratch& scratch,
-              double* r, double* u, SolveResult& result)
-      : problem_(problem), options_(options), form_(form), scratch_(scratch), r_(r), u_(u), result_(result) {}
+  FewContacts(const ContactProblem& problem, const SolverOptions& options, SolverScratch& scratch, double* r, double* u,
+              SolveResult& result)
+      : problem_(problem), options_(options), scratch_(scratch), r_(r), u_(u), result_(result) {}
 
   // From impulses of the residual `start`.
   void run(double start) {
-    if (form_ == EquationForm::kTooLarge) return search(options_);
+    if (chooseForm(problem_, scratch_) == EquationForm::kTooLarge) return search(options_);
     iterate(start);
     if (isSqueezedNow() && !(options_.largest_give > 0)) return yield();
     if (isSqueezedNow()) letGo();
@@ -231,7 +231,10 @@ class FewContacts {
     if (isSqueezedNow() && !isSpent()) search(options_);
   }
 
-  ScaledSolve startHere(double residual) { return {problem_, form_, scratch_, r_, u_, residual}; }
+  // The search leaves the structure of its own matrix in the scratch.
+  ScaledSolve startHere(double residual) {
+    return {problem_, chooseForm(problem_, scratch_), scratch_, r_, u_, residual};
+  }
   void take(const ScaledSolve& solve, SolveMethod method) {
     solve.write(r_, u_);
     projectOntoCones(problem_, r_);
@@ -257,7 +260,6 @@ class FewContacts {
 
   const ContactProblem& problem_;
   const SolverOptions& options_;
-  const EquationForm form_;
   SolverScratch& scratch_;
   double *const r_, *const u_;
   SolveResult& result_;
@@ -268,10 +270,9 @@ class FewContacts {
 void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch,
                       double* r, double* u, SolveResult& result) {
   PINCER_ASSERT(problem.contactCount() <= kFewContacts);
-  const EquationForm form = chooseForm(problem, scratch);
   result.method = SolveMethod::kNotConverged;
   result.converged = false;
-  FewContacts(problem, options, form, scratch, r, u, result).run(start);
+  FewContacts(problem, options, scratch, r, u, result).run(start);
 }
 
 }  // namespace pincer::engine
