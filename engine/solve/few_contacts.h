@@ -8,7 +8,7 @@
 //
 // Contacts that slip by 1e-5 of the problem's speeds seem to contradict each other: friction follows the direction of
 // the slip, which errors of 1e-6 turn. The interior point goes down to 1e-12, by equations contact by contact.
-// A point between walls, if all that failed, goes to point_problem.h. Decision 4 says why the interior point stays.
+// A point between walls, if all that failed, goes to point_problem.h. Decision 20 says why the interior point stays.
 //
 // Never throws, allocates or prints; deterministic.
 #pragma once
@@ -23,8 +23,8 @@ constexpr int kManyContacts = 12;
 constexpr int kFewContacts = 60;    // beyond, what needs many factorisations costs milliseconds
 constexpr int kDenseContacts = 40;  // beyond, a dense matrix costs more than any graph of movers that fits
 
-// Solves `problem`, of at most kFewContacts, its contacts weighed (residual.h), from `r` (in the cones) whose velocities
-// `u` and residual `start` are; as solveContacts.
+// Solves `problem`, of at most kFewContacts, its contacts weighed (residual.h), from `r` (in the cones), whose
+// velocities are `u` and whose residual is `start`; as solveContacts.
 void solveFewContacts(const ContactProblem& problem, const SolverOptions& options, double start, SolverScratch& scratch,
                       double* r, double* u, SolveResult& result);
 

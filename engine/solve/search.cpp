@@ -27,18 +27,15 @@ constexpr double kShareOfSlow = 0.1;  // of that slip: what is more would keep i
 constexpr double kSwept = 3e-4;       // of the problem's speeds: an error that sweeps reach for less than steps
 constexpr int kSweepsAtATime = 16;    // they cost two steps
 
-constexpr int kProductsPerRoundContact = 3;             // a row of balls in a groove takes one
-constexpr std::int64_t kPerContactLooked = 150;         // multiplications
-constexpr std::int64_t kFewestOperations = 60'000'000;  // of a search: some 80 ms
-// Of few contacts: as many as find 98 in a hundred of what is found at all; of what is looked for once more.
-constexpr int kShortSteps = 80, kInsideSteps = 160, kLongSteps = 480;
+constexpr int kProductsPerRoundContact = 3;                                      // a row of balls in a groove takes one
+constexpr std::int64_t kPerContactLooked = 150, kFewestOperations = 60'000'000;  // multiplications; a search's, 80 ms
 constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
+constexpr int kFewFactorisations[] = {80, 160, 480};    // of few contacts, by effort: 80 find 98 in a hundred
 constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
 constexpr int kHitSolves = 6, kPolishRounds = 3;        // that share a tick's hits; of what is quiet, to round-off
 constexpr double kPolishEpsilon = 1e-4, kQuiet = 1e-3;  // quiet: slip of what is about to rest, of the problem's speeds
 constexpr double kNear = 100;                           // of what is enough: a start that is nearer settles
 
-// How rounds follow each other.
 constexpr double kEasier = 0.2, kHarder = 10;  // times epsilon: after a round of a few steps, after one that failed
 constexpr int kEasySteps = 2;
 constexpr double kStillFading = 0.7, kFar = 3e-4;  // of a give or an error before; from where rounds rather fail [m/s]
@@ -99,7 +96,7 @@ class Search {
     if (isFew() || options_.accuracy == 0) return restErrorOf(options_);
     return std::max(kShareOfSlip * slip_, std::clamp(kShareOfSlow * slip_, finest(), options_.accuracy));
   }
-  // Of a round's own, at most [m/s].
+  // Of a round's own, at most [m/s]. Few go on to the tolerance as long as they get nearer.
   double left() const { return kLeft * std::max(isFew() ? 0 : limit(), options_.tolerance * referenceSpeed(problem_)); }
   bool isEnough() const { return isWithinTolerance() || error_.speed <= limit(); }
   bool isAtGoal() const { return isFew() ? isWithinTolerance() : isEnough(); }
@@ -135,16 +132,13 @@ class Search {
     if (isHit()) scratch_.hit_operations -= before - scratch_.operations_left;
   }
 
-  // Bodies that move so fast as in a hit aren't worth the same share of their speed:
-  // a tick's work follows from its contacts.
+  // What moves as fast as in a hit isn't worth the same share of its speed: a tick's work follows from its contacts.
   bool isHit() const {
     return !isFew() && options_.accuracy > 0 && referenceSpeed(problem_) > kHitSpeed * options_.accuracy;
   }
-  static int stepsOf(SolverEffort effort) {
-    return effort == SolverEffort::kShort ? kShortSteps : effort == SolverEffort::kInside ? kInsideSteps : kLongSteps;
-  }
   std::int64_t mostOperations(const MoverMatrix& matrix) const {
-    if (isFew() && !isPatient()) return stepsOf(options_.effort) * matrix.costOfFactorisation();
+    if (isFew() && !isPatient())
+      return kFewFactorisations[static_cast<int>(options_.effort)] * matrix.costOfFactorisation();
     const std::int64_t most = times() * std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
     return (isHit() ? std::min(most, scratch_.hit_operations / kHitSolves) : most) / scratch_.haste;
   }
@@ -305,16 +299,12 @@ class Search {
   }
 
   void conclude() {
-    if (result_.give > 0) {
+    const bool gives = result_.give > 0;
+    if (!gives) error_ = best_;
+    if (!gives && !isEnough())
+      result_.method = SolveMethod::kNotConverged;
+    else if (gives || result_.method == SolveMethod::kNoContact)
       result_.method = SolveMethod::kNewton;
-      return;
-    }
-    error_ = best_;
-    if (isEnough()) {
-      if (result_.method == SolveMethod::kNoContact) result_.method = SolveMethod::kNewton;
-      return;
-    }
-    result_.method = SolveMethod::kNotConverged;
   }
 
   // The last resort where walls close on what friction jams, without looking for another answer first.

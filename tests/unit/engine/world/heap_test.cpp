@@ -116,8 +116,8 @@ TEST(Heap, OfFiftyBallsIsSweptWhereNewtonsMethodFails) {
   EXPECT_GT(swept, 100);
 }
 
-// Balls wedged between balls and walls ask for what no motion gives, by some um/s where they stick and slide in
-// turn: up to 1 % of the ticks were flagged.
+// Balls wedged between balls and walls seem to ask for what no motion gives, by some um/s where they stick and slide in
+// turn: up to 1 % of the ticks were flagged, and 1 % gave way where there is an answer. A few have none.
 TEST(Heap, OfTenBallsHasAnAnswerInEachTick) {
   int gave = 0;
   for (int start = 0; start < 6; ++start) {
@@ -130,7 +130,8 @@ TEST(Heap, OfTenBallsHasAnAnswerInEachTick) {
     }
     EXPECT_LT(deepest(scratch), 1e-6);
   }
-  EXPECT_GT(gave, 50);
+  EXPECT_GT(gave, 0);
+  EXPECT_LT(gave, 20);
 }
 
 // Twenty corners on an ellipsoid, another for each i.
