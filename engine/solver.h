@@ -17,7 +17,7 @@ constexpr int kTorsionRow = kPointRows, kRollingRow = 4;  // about n; the first 
 // of one contact; rows that it doesn't have are 0
 using ContactVector = Eigen::Matrix<double, kMaxContactRows, 1, Eigen::DontAlign>;
 
-// What is tried for up to sixty contacts where Newton's method fails.
+// Methods that are tried for up to sixty contacts where Newton's method fails.
 enum class SolverEffort : std::uint8_t {
   kShort,   // a short search
   kInside,  // then an interior point

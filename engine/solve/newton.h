@@ -28,9 +28,10 @@ int iterateNewton(const ScaledProblem& problem, double tolerance, int iterations
 // For contacts that contradict each other, which have no answer: up to `rounds` problems with the velocities
 // u + epsilon (r - r_c), r_c the answer of the round before (R. Rockafellar, SIAM J. Control Optim. 14 (1976) 877-898,
 // proximal point). Each is tame, for contacts give way by epsilon. The result is the answer for q + give, give =
-// epsilon (r - r_c) of the last round that was solved. It tends to the least that they have to give way by; rounds go on until it is
-// at most `largest` [m/s] and no longer fades. scratch.give holds it, unscaled [m/s]; `current`, its u with it, is that
-// round's. `largest` becomes the largest of it; infinite, and `current` as before, if no round was solved.
+// epsilon (r - r_c) of the last round that was solved. It tends to the least that they have to give way by; rounds go
+// on until it is at most `largest` [m/s] and no longer fades. scratch.give holds it, unscaled [m/s]; `current`, its u
+// with it, is that round's. `largest` becomes the largest of it; infinite, and `current` as before, if no round was
+// solved.
 int iterateGiving(const ScaledProblem& problem, double tolerance, int rounds, ContactEquations& equations,
                   SolverScratch& scratch, Iterate& current, Iterate& trial, double& largest);
 

@@ -132,7 +132,7 @@ class Search {
     if (isHit()) scratch_.hit_operations -= before - scratch_.operations_left;
   }
 
-  // What moves as fast as in a hit isn't worth the same share of its speed: a tick's work follows from its contacts.
+  // Bodies as fast as in a hit aren't worth the same share of their speed: a tick's work follows from its contacts.
   bool isHit() const {
     return !isFew() && options_.accuracy > 0 && referenceSpeed(problem_) > kHitSpeed * options_.accuracy;
   }
