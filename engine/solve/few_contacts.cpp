@@ -76,9 +76,8 @@ class ScaledSolve {
     ContactEquations equations(problem_, EquationForm::kContacts, scratch_);
     followPath(options, equations);
   }
-  // By how much contacts gave way at most [m/s]; infinite if that was no answer. The start may hold no velocities.
+  // By how much contacts gave way at most [m/s]; infinite if that was no answer.
   double giveWay(const SolverOptions& options) {
-    evaluate(problem_, current_);
     double give = options.largest_give;
     steps_ +=
         iterateGiving(problem_, 0.5 * options.tolerance, kGivingRounds, equations_, scratch_, current_, trial_, give);
@@ -138,8 +137,9 @@ class FewContacts {
   void run(double start) {
     if (chooseForm(problem_, scratch_) == EquationForm::kTooLarge) return search(options_);
     iterate(start);
-    if (isSqueezedNow() && !(options_.largest_give > 0)) return yield();
-    if (isSqueezedNow()) letGo();
+    const bool is_squeezed = isSqueezedNow();
+    if (is_squeezed && !(options_.largest_give > 0)) return yield();
+    if (is_squeezed) letGo();
     if (!result_.converged && !isSpent()) goOn();
   }
 
@@ -156,9 +156,9 @@ class FewContacts {
     brief.largest_give = 0;
     brief.effort = std::min(options_.effort, SolverEffort::kInside);
     search(brief);
-    if (isAnswered() || options_.effort == SolverEffort::kShort) return;
+    if (isAnswered() || isSpent() || options_.effort == SolverEffort::kShort) return;
     if (problem_.contactCount() >= kManyContacts && giveWay()) return;
-    if (isFoundFromInside(brief) || giveWay() || options_.effort == SolverEffort::kInside) return;
+    if (findFromInside(brief) || giveWay() || options_.effort == SolverEffort::kInside) return;
     search(options_);
     if (!isAnswered()) giveWay();
   }
@@ -170,8 +170,9 @@ class FewContacts {
     result_.start = before.start;
   }
 
-  // By an interior point, and a search from where it ends; what was found before stays if it is better.
-  bool isFoundFromInside(const SolverOptions& brief) {
+  // By an interior point, and a search from where it ends. True if that is an answer; else what was found before stays
+  // if it is better.
+  bool findFromInside(const SolverOptions& brief) {
     if (isSpent()) return false;
     const SolveResult before = result_;
     std::copy(r_, r_ + problem_.rowCount(), scratch_.few_r.begin());
@@ -182,13 +183,15 @@ class FewContacts {
     const bool is_squeezed = isSqueezedNow();
     if (!is_squeezed && !result_.converged) search(brief);
     if (!is_squeezed && result_.converged) return true;
-    if (is_squeezed || result_.yields || !(result_.residual < before.residual)) {
-      std::copy(scratch_.few_r.begin(), scratch_.few_r.begin() + problem_.rowCount(), r_);
-      const int iterations = result_.iterations;
-      result_ = before;
-      result_.iterations = iterations;
-    }
+    if (is_squeezed || result_.yields || !(result_.residual < before.residual)) takeBack(before);
     return false;
+  }
+  void takeBack(const SolveResult& before) {
+    const int iterations = result_.iterations;
+    std::copy(scratch_.few_r.begin(), scratch_.few_r.begin() + problem_.rowCount(), r_);
+    result_ = before;
+    result_.iterations = iterations;
+    report();
   }
 
   void solveAsPoint() {

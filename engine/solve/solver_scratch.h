@@ -65,7 +65,8 @@ struct SolverScratch {
   // Of few_contacts.h: the scaled problem, linear equations, three iterates.
   int max_contacts = 0, dense_contacts = 0;
   std::vector<ContactSide> sides;  // of all contacts, as many as the problem's
-  std::vector<double> W, q, scale, jacobian, step, rhs, response, shift_centre, workspace, few_r;
+  std::vector<double> W, q, scale, jacobian, step, rhs, response, shift_centre, workspace;
+  std::vector<double> few_r;                                // impulses found before the interior point
   std::array<std::vector<double>, 3> impulses, velocities;  // current, trial and best iterate
   std::vector<int> active, pivots;                          // contacts in the dense equations; row swaps
   std::vector<ContactTerms> terms;                          // contact_equations.h

@@ -43,6 +43,7 @@ TEST(Stress, WorldsThatOnceFailedHold) {
   run("stress/joints", 7272);  // another, by stops that press while it whirls
   run("stress/joints", 457);   // a spring seemed to gain energy beside a brake that holds
   run("stress/joints", 1024);  // and against one that slides
+  run("stress/hit", 6);        // the heap was corrupted: equations in the form of before a search
   // with new memory sleeping bricks went on otherwise: what flew elsewhere said which of their open contacts are solved
   for (const std::uint64_t seed : {12, 57, 74}) run("stress/hit", seed);
   for (const std::uint64_t seed : {99, 161}) run("stress/hit", seed);  // a second attempt turned them by round-off
