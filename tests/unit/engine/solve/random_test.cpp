@@ -222,8 +222,8 @@ TEST(Solver, CarriesTheWeightsAtAnyMassRatio) {
   }
 }
 
-// What was found before an interior point was taken back without its velocities, by which unsolved problems are then
-// scaled to bring no energy in.
+// Impulses found before an interior point, and better than its own, were taken back without their velocities, by which
+// unsolved problems are then scaled to bring no energy in.
 TEST(Effort, OfAnySizeLeavesTheVelocitiesOfItsImpulses) {
   int unsolved = 0;
   for (const SolverEffort effort : {SolverEffort::kShort, SolverEffort::kInside, SolverEffort::kAll}) {
