@@ -4,6 +4,7 @@
 // Frames: B as the shape's author chose it; I the body's inertial frame, at its centre of mass, axes principal.
 // Dynamics works in I, people read B (bodyPose, state.h).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -79,6 +80,7 @@ struct BodyModel {
   double bounding_radius = 0;  // about the centre of mass [m]; infinite for half-spaces
   // about half the least thickness of its thinnest shape [m]; infinite for half-spaces and dishes
   double inner_radius = 0;
+  double contact_margin = 0;   // within which pairs make contacts, of a dynamic body by its size [m]; see contactMargin
   double corner_reach = 0;     // how much further than that it reaches; 0 where turning doesn't change its outline [m]
   bool may_be_hollow = false;  // its surface may curve inwards: a mesh, a dish, several shapes
   int joint_group = -1;        // that binds it to others or to the world, -1: none
@@ -151,7 +153,8 @@ enum class Combination : std::uint8_t {
 struct WorldOptions {
   double h = 1e-3;                     // tick [s], 1e-5 .. 1e-2
   Vec3 gravity_W = Vec3(0, 0, -9.81);  // [m/s^2]
-  double contact_margin = 1e-3;        // pairs closer than this make contacts [m], > 0
+  // pairs closer than this make contacts, or than a tenth of the smaller one's bounding radius [m], > 0
+  double contact_margin = 1e-3;
   // 4 .. kMostContacts; more are dropped, deepest kept, and StepStatus says so; 0: as many as the bodies may well have
   int max_contacts = 0;
   int threads = 1;  // that solve islands, 1 .. 16; the results are the same to the bit
@@ -197,6 +200,11 @@ struct WorldModel {
 
 inline bool isHeldBody(const WorldModel& model, const BodyModel& body) {
   return body.joint_group >= 0 && model.joint_groups[body.joint_group].is_held_body;
+}
+
+// Bodies that are closer than this, and than they come in a tick, make contacts [m].
+inline double contactMargin(const BodyModel& a, const BodyModel& b) {
+  return std::min(a.contact_margin, b.contact_margin);
 }
 
 inline bool isJoined(const BodyModel& body) { return body.joint_group >= 0 || body.tree >= 0; }

@@ -113,7 +113,9 @@ double innerRadius(const contact::Shape& shape) {
   return std::sqrt(std::max(3 * (0.5 * moments.sum() - moments.maxCoeff()), 0.0));
 }
 
-void setExtent(const std::vector<ColliderModel>& colliders, BodyModel& body) {
+// margin  the world's [m]
+void setExtent(const std::vector<ColliderModel>& colliders, double margin, BodyModel& body) {
+  constexpr double kMarginOfRadius = 0.1;  // at most: bodies that are laid further apart aren't neighbours
   body.inner_radius = std::numeric_limits<double>::infinity();
   bool is_round = true;
   for (const ColliderModel& c : colliders) {
@@ -126,6 +128,7 @@ void setExtent(const std::vector<ColliderModel>& colliders, BodyModel& body) {
                          std::holds_alternative<contact::Dish>(c.shape);
   }
   body.may_be_hollow = body.may_be_hollow || colliders.size() > 1;
+  body.contact_margin = body.dynamic ? std::min(margin, kMarginOfRadius * body.bounding_radius) : margin;
   body.corner_reach = is_round ? 0 : std::max(body.bounding_radius - body.inner_radius, 0.0);
 }
 
@@ -173,7 +176,7 @@ std::vector<ColliderModel> collidersFor(const BodySpec& spec, int number) {
   return colliders;
 }
 
-BodyModel bodyFor(const BodySpec& spec, const std::vector<ColliderModel>& colliders) {
+BodyModel bodyFor(const BodySpec& spec, const std::vector<ColliderModel>& colliders, double margin) {
   BodyModel body;
   body.name = spec.name;
   body.collider_count = static_cast<int>(colliders.size());
@@ -182,7 +185,7 @@ BodyModel bodyFor(const BodySpec& spec, const std::vector<ColliderModel>& collid
   body.dynamic = spec.dynamic;
   body.driven = spec.driven;
   if (spec.dynamic) setInertia(spec, body);
-  setExtent(colliders, body);
+  setExtent(colliders, margin, body);
   return body;
 }
 

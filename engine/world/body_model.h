@@ -17,8 +17,8 @@ bool isSupport(const contact::Shape& shape);
 // The shapes of the body with this number, or its only one. Throws InputError where a material or pose can't be.
 std::vector<ColliderModel> collidersFor(const BodySpec& spec, int number);
 
-// The body of these shapes, but for where they stand in the model and for its motion. Throws
-// InputError where its mass or inertia can't be.
-BodyModel bodyFor(const BodySpec& spec, const std::vector<ColliderModel>& colliders);
+// The body of these shapes, in a world of the given contact margin, but for where they stand in the model and for its
+// motion. Throws InputError where its mass or inertia can't be.
+BodyModel bodyFor(const BodySpec& spec, const std::vector<ColliderModel>& colliders, double margin);
 
 }  // namespace pincer::engine

@@ -25,8 +25,8 @@ struct Box {
 
 Box boxOf(const WorldModel& model, const WorldScratch& scratch, int body) {
   const BodyScratch& s = scratch.bodies[body];
-  const double reach =
-      model.bodies[body].bounding_radius + 0.5 * model.options.contact_margin + model.options.h * s.start.v_W.norm();
+  const BodyModel& b = model.bodies[body];
+  const double reach = b.bounding_radius + 0.5 * b.contact_margin + model.options.h * s.start.v_W.norm();
   const Vec3 low = s.X_WI_mid.p - Vec3::Constant(reach), high = s.X_WI_mid.p + Vec3::Constant(reach);
   return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
@@ -98,7 +98,8 @@ bool isNear(const WorldModel& model, const WorldScratch& scratch, int unbounded,
   const BodyScratch &plane = scratch.bodies[unbounded], &s = scratch.bodies[body];
   const double height = plane.R_WB_mid.col(2).dot(s.X_WI_mid.p - plane.X_WB_mid.p);
   const double speed = (s.start.v_W - plane.start.v_W).norm();
-  return height <= model.bodies[body].bounding_radius + model.options.contact_margin + model.options.h * speed;
+  const BodyModel& b = model.bodies[body];
+  return height <= b.bounding_radius + b.contact_margin + model.options.h * speed;
 }
 
 }  // namespace

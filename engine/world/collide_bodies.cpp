@@ -85,8 +85,7 @@ void collidePair(const WorldModel& model, const WorldState& state, const BodyPai
   // A gap that closes within the tick must be seen at its middle: the far end of a sheet that slaps down as well.
   const double speed = (sa.start.v_W - sb.start.v_W).norm();
   const double turning = model.has_corners ? cornerSpeed(a, sa) + cornerSpeed(b, sb) : 0;
-  const double margin =
-      model.options.contact_margin + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
+  const double margin = contactMargin(a, b) + h * std::max(speed, 0.5 * (speed + turning)) + sa.flung + sb.flung;
   if (!boundsTouch(a, b, sa, sb, margin)) return;
   noteFastPair(model, state, pair.a, pair.b, scratch);
   if (keepContacts(model, state, pair, scratch)) return;

@@ -189,7 +189,7 @@ int WorldBuilder::addBody(const BodySpec& spec) {
     throw InputError(fmt::format("body \"{}\": it can't be both dynamic and driven. Choose one.", spec.name));
   const int number = static_cast<int>(model_.bodies.size());
   std::vector<ColliderModel> colliders = collidersFor(spec, number);
-  BodyModel body = bodyFor(spec, colliders);
+  BodyModel body = bodyFor(spec, colliders, model_.options.contact_margin);
   body.first_collider = static_cast<int>(model_.colliders.size());
   if (spec.driven) body.motion = model_.driven_count++;
   model_.bodies.push_back(std::move(body));

@@ -10,10 +10,21 @@
 namespace pincer::engine {
 namespace {
 
+// Up to which gap an open contact hovers [m].
+double hoveringGap(const WorldModel& model, const Contact& c) {
+  constexpr double kHovering = 1e-3;  // of the margin
+  double margin = model.options.contact_margin;
+  for (const Side* side : {&c.a, &c.b}) {
+    if (side->kind == SideKind::kBody)
+      margin = std::min(margin, model.bodies[static_cast<std::size_t>(side->index)].contact_margin);
+  }
+  return kHovering * margin;
+}
+
 // How long it has been open by next to nothing, kOpenTicks if by more.
-int openTicks(const Contact& c, double hovering) {
+int openTicks(const WorldModel& model, const Contact& c) {
   if (c.active()) return 0;
-  if (!(c.phi <= hovering)) return kOpenTicks;
+  if (!(c.phi <= hoveringGap(model, c))) return kOpenTicks;
   return std::min(c.open_ticks + 1, kOpenTicks);
 }
 
@@ -26,8 +37,8 @@ bool keepsOverlap(const Contact& c) {
   return Vec3(v_end_C[0], v_end_C[1], v_end_C[kNormalRow]).norm() < kClosingSpeed;
 }
 
-void remember(const Contact& c, double h, double hovering, ContactMemory& m) {
-  const int open_ticks = openTicks(c, hovering);
+void remember(const WorldModel& model, const Contact& c, double h, ContactMemory& m) {
+  const int open_ticks = openTicks(model, c);
   const bool hovers = open_ticks > 0 && open_ticks < kOpenTicks;
   m.id = c.id;
   m.r = c.r;
@@ -188,8 +199,7 @@ std::uint64_t nextId(std::span<const SleepingContact> sleeping) {
 }  // namespace
 
 void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState& state) {
-  constexpr double kHovering = 1e-3;  // of the margin
-  const double h = scratch.h, hovering = kHovering * model.options.contact_margin;
+  const double h = scratch.h;
   const bool may_sleep = model.options.sleep && scratch.still_bodies > 0;
   std::span<SleepingContact> sleeping = scratch.sleep.contacts;
   PINCER_ASSERT(scratch.contacts.size() + sleeping.size() <= state.contacts.size());
@@ -203,7 +213,7 @@ void rememberContacts(const WorldModel& model, WorldScratch& scratch, WorldState
       next_id = nextId(sleeping);
     }
     if (may_sleep) keepOld(scratch, c, place, scratch.kept);
-    remember(c, h, hovering, *place++);
+    remember(model, c, h, *place++);
   }
   if (!sleeping.empty()) place = putSleeping(sleeping, ~std::uint64_t{0}, first, place);
   state.contact_count = static_cast<int>(place - first);

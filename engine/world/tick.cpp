@@ -261,7 +261,7 @@ class Tick {
       if (!s.touched || !body.dynamic || body.corner_reach == 0) continue;
       const double way =
           h * body.corner_reach * angularVelocity(body.rotation, s.X_WI_mid.q, s.angular_impulse_W).norm();
-      if (!(way > std::max({model_.options.contact_margin, s.flung, is_heap ? body.inner_radius : 0.0}))) continue;
+      if (!(way > std::max({body.contact_margin, s.flung, is_heap ? body.inner_radius : 0.0}))) continue;
       s.flung = way;
       flings = true;
     }

@@ -79,7 +79,7 @@ class ClosingPair {
       : model_(model), state_(state), scratch_(scratch), pair_(pair) {
     const double before = (scratch.bodies[pair.a].start.v_W - scratch.bodies[pair.b].start.v_W).norm();
     const double after = (endVelocity(model, scratch, pair.a) - endVelocity(model, scratch, pair.b)).norm();
-    margin_ = 2 * (model.options.contact_margin + scratch.h * std::max(before, after));
+    margin_ = 2 * (contactMargin(model.bodies[pair.a], model.bodies[pair.b]) + scratch.h * std::max(before, after));
   }
 
   // Newton's method on the parabolas of the points. A gap between convex bodies that don't turn is a convex function of

@@ -177,6 +177,34 @@ Crate fallInto(double half, const contact::Shape& shape, int count, std::uint64_
 
 // Slips of two faces that stick were turned back a little less than to a rigid motion in every tick, where their places
 // weren't in one plane to the nanometre: nothing moved any more, and nothing slept.
+// Three layers of cubes of the given side [m], 3/20 of it apart.
+WorldModel pyramidOf(double side, std::vector<BodyStart>& starts) {
+  WorldBuilder builder{WorldOptions{}};
+  builder.addBody({"floor", contact::HalfSpace{}, false, 0, {}});
+  starts.push_back(startAt(Vec3::Zero()));
+  const double pitch = 1.15 * side;
+  for (int layer = 0; layer < 3; ++layer) {
+    for (int i = 0; i < (3 - layer) * (3 - layer); ++i) {
+      const int row = i / (3 - layer), column = i % (3 - layer);
+      builder.addBody({"cube", contact::Box{Vec3::Constant(0.5 * side)}, true, 2500 * side * side * side, {}});
+      starts.push_back(
+          startAt(Vec3(pitch * (row + 0.5 * layer), pitch * (column + 0.5 * layer), side * (layer + 0.5))));
+    }
+  }
+  return builder.build();
+}
+
+TEST(Heap, OfTinyCubesHasAsManyContactsAsOneOfLargeOnes) {
+  for (const double side : {2e-4, 6e-4, 0.02, 2.0}) {
+    std::vector<BodyStart> starts;
+    const WorldModel model = pyramidOf(side, starts);
+    WorldState state = makeState(model, starts, {});
+    const auto scratch = makeScratch(model);
+    EXPECT_EQ(step(model, state, *scratch).status, static_cast<std::uint32_t>(kStepOk)) << side;
+    EXPECT_EQ(contactCount(*scratch), 4 * 9 + 4 * 4 * 4 + 4 * 4) << side;  // a cube has four below or on each of four
+  }
+}
+
 TEST(Heap, OfCubesSleeps) {
   for (const std::uint64_t seed : {2, 8}) {
     Crate crate = fallInto(0.035, contact::Box{Vec3::Constant(0.01)}, 16, seed);
