@@ -231,9 +231,9 @@ Mat3 bend(const CylinderWithFlat& c, const Vec3& d) {
 
 // --- convex hull
 
-const Vec3& vertexOf(const Convex& c, int i) { return c.hull->vertices()[static_cast<std::size_t>(i)]; }
+const Vec3& vertexOf(const Polytope& hull, int i) { return hull.vertices()[static_cast<std::size_t>(i)]; }
 
-Vec3 support(const Convex& c, const Vec3& d) { return vertexOf(c, c.hull->extremeVertex(d)); }
+Vec3 support(const Convex& c, const Vec3& d) { return vertexOf(*c.hull, c.hull->extremeVertex(d)); }
 Vec3 inset(const Convex& c, const Vec3& d) {
   const std::vector<Vec3>& corners = c.hull->insetVertices();
   std::size_t best = 0;
@@ -244,63 +244,68 @@ Vec3 inset(const Convex& c, const Vec3& d) {
 }
 
 // Of a face with very many corners every n-th is taken.
-void addFace(const Convex& c, const Polytope::Face& face, Facet& f) {
-  const Polytope& hull = *c.hull;
+void addFace(const Polytope& hull, const Polytope::Face& face, Facet& f) {
   f.n = face.n;
   const std::span<const int> corners = hull.cornersOf(face), edges = hull.edgesOf(face);
   const std::size_t stride = (corners.size() + Facet::kMost - 1) / Facet::kMost;
-  for (std::size_t k = 0; k < corners.size(); k += stride) f.add(vertexOf(c, corners[k]), corners[k], edges[k]);
+  for (std::size_t k = 0; k < corners.size(); k += stride) f.add(vertexOf(hull, corners[k]), corners[k], edges[k]);
 }
 
-// The face around a vertex whose normal is d, to round-off; null if there is none.
-const Polytope::Face* faceAlong(const Polytope& hull, std::span<const int> edges_here, const Vec3& d, double length) {
-  constexpr double kAlong = 1 - 1e-13;  // cosine: then d is across all of the face's edges, see facet
-  for (const int e : edges_here) {
-    const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
-    for (const int i : {edge.left, edge.right}) {
-      const Polytope::Face& face = hull.faces()[static_cast<std::size_t>(i)];
-      if (d.dot(face.n) >= kAlong * length) return &face;
-    }
+// One of the faces around a vertex, another one for each of its edges.
+int faceBeside(const Polytope::Edge& edge, int vertex) { return edge.from == vertex ? edge.left : edge.right; }
+
+const Polytope::Face& faceTowards(const Polytope& hull, int vertex, const Vec3& d) {
+  const Polytope::Face* best = nullptr;
+  double most = 0;
+  for (const int e : hull.edgesAt(vertex)) {
+    const int i = faceBeside(hull.edges()[static_cast<std::size_t>(e)], vertex);
+    const Polytope::Face& face = hull.faces()[static_cast<std::size_t>(i)];
+    const double x = d.dot(face.n);
+    if (!best || x > most) most = x, best = &face;
   }
-  return nullptr;
+  PINCER_ASSERT(best);  // every corner of a hull has edges
+  return *best;
 }
 
-// The face around the extreme vertex that faces d most; but where d is across an edge, one of the two that the edge
-// joins.
-void facet(const Convex& c, const Vec3& d, Facet& f) {
-  const Polytope& hull = *c.hull;
-  const int vertex = hull.extremeVertex(d);
-  const double length = d.norm();
+bool isAcross(const Polytope& hull, const Vec3& d, int e) {
+  const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
+  const Vec3 along = vertexOf(hull, edge.to) - vertexOf(hull, edge.from);
+  const double x = d.dot(along);
+  return x * x < kNoAngle * kNoAngle * d.squaredNorm() * along.squaredNorm();
+}
+
+// The face around a vertex with most edges that d is across; of several the one that faces d most.
+const Polytope::Face& faceAcross(const Polytope& hull, int vertex, const Vec3& d) {
   const std::span<const int> edges_here = hull.edgesAt(vertex);
-  if (const Polytope::Face* face = faceAlong(hull, edges_here, d, length)) return addFace(c, *face, f);
-  const auto edgeOf = [&](int e) -> const Polytope::Edge& { return hull.edges()[static_cast<std::size_t>(e)]; };
-  const auto isAcross = [&](const Polytope::Edge& edge) {
-    const Vec3 along = vertexOf(c, edge.to) - vertexOf(c, edge.from);
-    return std::abs(d.dot(along)) < kNoAngle * length * along.norm();
-  };
-  constexpr std::size_t kMostKnown = 8;  // of edges at a vertex; asked again beyond
-  std::array<bool, kMostKnown> across{};
-  for (std::size_t k = 0; k < std::min(edges_here.size(), kMostKnown); ++k) across[k] = isAcross(edgeOf(edges_here[k]));
+  const double length = d.norm();
   const auto score = [&](int face) {
     double sum = d.dot(hull.faces()[static_cast<std::size_t>(face)].n) / length;
-    for (std::size_t k = 0; k < edges_here.size(); ++k) {
-      const Polytope::Edge& edge = edgeOf(edges_here[k]);
-      if (edge.left != face && edge.right != face) continue;
-      if (k < kMostKnown ? across[k] : isAcross(edge)) sum += 2;
+    for (const int e : edges_here) {
+      const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
+      if ((edge.left == face || edge.right == face) && isAcross(hull, d, e)) sum += 2;
     }
     return sum;
   };
-  const Polytope::Face* best = nullptr;
+  int best = -1;
   double most = 0;
   for (const int e : edges_here) {
-    const Polytope::Edge& edge = edgeOf(e);
-    for (const int i : {edge.left, edge.right}) {
-      const double s = score(i);
-      if (!best || s > most) most = s, best = &hull.faces()[static_cast<std::size_t>(i)];
-    }
+    const int i = faceBeside(hull.edges()[static_cast<std::size_t>(e)], vertex);
+    const double s = score(i);
+    if (best < 0 || s > most) most = s, best = i;
   }
-  PINCER_ASSERT(best);  // every corner of a hull has edges
-  addFace(c, *best, f);
+  return hull.faces()[static_cast<std::size_t>(best)];
+}
+
+// The face around the extreme vertex that faces d most; but where d is across an edge and isn't the face's normal, one
+// of the two that the edge joins.
+void facet(const Convex& c, const Vec3& d, Facet& f) {
+  constexpr double kAlong = 1 - 1e-13;  // cosine: round-off; then d is across all of the face's edges
+  const Polytope& hull = *c.hull;
+  const int vertex = hull.extremeVertex(d);
+  const Polytope::Face& towards = faceTowards(hull, vertex, d);
+  const auto is_across = [&](int e) { return isAcross(hull, d, e); };
+  const bool is_face = d.dot(towards.n) >= kAlong * d.norm() || std::ranges::none_of(hull.edgesAt(vertex), is_across);
+  addFace(hull, is_face ? towards : faceAcross(hull, vertex, d), f);
 }
 
 // Faces and edges around the extreme vertex.
@@ -309,10 +314,8 @@ void strata(const Convex& c, const Vec3& d, Strata& s) {
   const int vertex = hull.extremeVertex(d);
   for (const int e : hull.edgesAt(vertex)) {
     const Polytope::Edge& edge = hull.edges()[static_cast<std::size_t>(e)];
-    if (s.with_edges) s.addEdge((vertexOf(c, edge.to) - vertexOf(c, edge.from)).normalized());
-    // each face around the vertex once: the left one of the edges that leave it
-    const bool leaves = edge.from == vertex;
-    s.addNormal(hull.faces()[static_cast<std::size_t>(leaves ? edge.left : edge.right)].n);
+    if (s.with_edges) s.addEdge((vertexOf(hull, edge.to) - vertexOf(hull, edge.from)).normalized());
+    s.addNormal(hull.faces()[static_cast<std::size_t>(faceBeside(edge, vertex))].n);
   }
 }
 
