@@ -184,20 +184,28 @@ void clipFacet(const FlatFacet& facet, const FlatFacet& clipper, bool clipper_is
   }
 }
 
+// True of lines of round walls, or of one and an edge, that cross at so small an angle that they touch all along: there
+// they are hardly nearer to each other than at the ends, and round-off would move the place from end to end.
+bool touchAllAlong(const Vec2& a, const Vec2& b, double radii, double size) {
+  constexpr double kNearer = 1e-7;  // of the size
+  const double aside = std::abs(cross(a, b)) / std::max(a.norm(), b.norm());
+  return aside * aside < 2 * radii * kNearer * size;
+}
+
 // The part of segment f that lies over the segment g, measured along f: the ends of f or the feet of g's ends; and
-// where they cross, without ends within `one_point` of that [m]: of two such now one, now the other would carry.
-void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance, double one_point, Shared& out) {
+// where they cross, without ends within kOnePoint of that: of two such now one, now the other would carry.
+void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance, double size, Shared& out) {
   const Vec2 a0 = fa.corner(0).x, b0 = fb.corner(0).x;
   const Vec2 a = fa.corner(1).x - a0, b = fb.corner(1).x - b0;
   const double sine = cross(a, b), lengths = a.norm() * b.norm();
-  if (std::abs(sine) > kNoAngle * lengths) {
+  const double radii = fa.line_radius + fb.line_radius;
+  if (std::abs(sine) > kNoAngle * lengths && !touchAllAlong(a, b, radii, size)) {
     const double s = cross(b0 - a0, b) / sine, t = cross(b0 - a0, a) / sine;
     const double slack_a = tolerance / a.norm(), slack_b = tolerance / b.norm();
     if (s >= -slack_a && s <= 1 + slack_a && t >= -slack_b && t <= 1 + slack_b)
       out.add(a0 + std::clamp(s, 0.0, 1.0) * a, featureOf(kCrossing, fa.corner(0).edge, fb.corner(0).edge));
   }
   if (std::abs(sine) > kNearlyParallelEdges * lengths) return;
-  const double radii = fa.line_radius + fb.line_radius;
   // `share`: of the way to the other line after which the two walls are as steep as each other.
   const auto addEnd = [&](const FlatCorner& end, const Vec2& from, const Vec2& line, double share) {
     const double at = (end.x - from).dot(line) / line.squaredNorm();
@@ -206,7 +214,7 @@ void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance,
     const Vec2 beside = from + at * line - end.x;
     if (beside.norm() > tolerance + radii) return;
     const Vec2 x = end.x + share * beside;
-    const auto isSame = [&](const Corner& other) { return (other.x - x).norm() <= one_point; };
+    const auto isSame = [&](const Corner& other) { return (other.x - x).norm() <= kOnePoint * size; };
     if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame)) out.add(x, end.feature);
   };
   const double share_a = radii > 0 ? fa.line_radius / radii : 0.5;
@@ -214,10 +222,10 @@ void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance,
   for (int i = 0; i < 2; ++i) addEnd(fb.corner(i), a0, a, 1 - share_a);
 }
 
-void share(const FlatFacet& fa, const FlatFacet& fb, double tolerance, double one_point, Shared& out) {
+void share(const FlatFacet& fa, const FlatFacet& fb, double tolerance, double size, Shared& out) {
   if (fa.count == 1) return out.add(fa.corner(0).x, fa.corner(0).feature);
   if (fb.count == 1) return out.add(fb.corner(0).x, fb.corner(0).feature);
-  if (fa.count == 2 && fb.count == 2) return overlapSegments(fa, fb, tolerance, one_point, out);
+  if (fa.count == 2 && fb.count == 2) return overlapSegments(fa, fb, tolerance, size, out);
   if (fb.count > 2) return clipFacet(fa, fb, false, tolerance, out);
   clipFacet(fb, fa, true, tolerance, out);
 }
@@ -329,7 +337,7 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   for (double slack = kSamePlace; slack < 2e-4 && !found;
        slack *= 10) {  // the direction may be right to round-off only
     shared.count = 0;
-    share(fa, fb, slack * size, kOnePoint * size, shared);
+    share(fa, fb, slack * size, size, shared);
     heights.measure(shared, surfaces);
     found = heights.least_gap < least + slack * size;
     exactly = exactly || (found && slack == kSamePlace);
