@@ -85,9 +85,8 @@ class Search {
   // As good as what rests asks for.
   bool isExact() const {
     if (problem_.calm && error_.speed <= restErrorOf(options_)) return true;
-    return isWithinTolerance() &&
-           (!problem_.strict ||
-            error_.residual <= exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_)));
+    const double exact = exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_));
+    return isWithinTolerance() && (!problem_.strict || error_.residual <= exact);
   }
   // A looser accuracy than the default doesn't keep what is slow from rest, nor what slides from sweeps [m/s].
   double finest() const { return std::min(options_.accuracy, SolverOptions{}.accuracy); }
@@ -155,14 +154,17 @@ class Search {
     if (squeezes(scratch_.best_r)) soften(round);
   }
 
-  // An answer that is good enough already, brought to round-off.
+  // An answer that is good enough already, brought to round-off: one that isn't feeds the next tick's error.
   void polish(ProximalRound& round) {
-    const double tolerance = kStrictness * options_.tolerance;
-    for (int n = 0; n < kPolishRounds && best_.residual > tolerance && !isSpent(); ++n) {
+    double epsilon = kPolishEpsilon;
+    for (int n = 0; n < kPolishRounds && best_.residual > kStrictness * options_.tolerance && !isSpent(); ++n) {
       const double before = best_.residual;
-      if (!round.solve(Shift::kFollows, {kPolishEpsilon, left(), stepsOf(kMostRoundSteps)}, result_.iterations)) break;
-      recentre();
-      if (!(best_.residual < 0.5 * before)) break;
+      if (round.solve(Shift::kFollows, {epsilon, left(), stepsOf(kMostRoundSteps)}, result_.iterations)) {
+        recentre();
+        if (!(best_.residual < 0.5 * before)) break;
+      } else {
+        epsilon *= kHarder;
+      }
     }
     result_.method = SolveMethod::kNewton;
   }
@@ -316,7 +318,6 @@ class Search {
     matrix.fits() ? softenShifted(round) : holdNothing();
   }
 
-  // Contacts that are soft, about no impulse.
   void soften(ProximalRound& round) {
     result_.method = SolveMethod::kNotConverged;
     result_.yields = true;
@@ -345,7 +346,6 @@ class Search {
     letGo();
     keep();
   }
-  // To no impulse.
   void letGo() {
     std::fill(scratch_.centre.begin(), scratch_.centre.begin() + rows(), 0.0);
     error_ = errorOf(problem_, scratch_.centre.data(), scratch_, scratch_.u.data());

@@ -252,5 +252,23 @@ TEST(ConvexPairs, DeepOverlapIsFiniteAndLeadsOut) {
   }
 }
 
+// They touched where their lines cross, anywhere from end to end, by the last digits of the angle between them.
+TEST(ConvexPairs, RoundWallsThatAreAllButParallelTouchAtTheEndsOfWhatTheyShare) {
+  constexpr double kRadius = 0.01, kHalf = 0.03, kShift = 0.002;
+  RandomNumbers random(5);
+  const auto tilted = [&](double angle) { return about(direction(random), random.uniform(-angle, angle)); };
+  for (const Shape& shape : {Shape(Cylinder{kRadius, kHalf}), Shape(Capsule{kRadius, kHalf})}) {
+    for (int i = 0; i < 500; ++i) {
+      const Pose X_WA{tilted(2e-5), {2 * kRadius + random.uniform(-1e-9, 1e-9), 0, kShift}}, X_WB{tilted(2e-5), {}};
+      const PairPoints found = collide(shape, X_WA, shape, X_WB, 1e-4);
+      ASSERT_EQ(found.count, 2) << i;
+      for (int k = 0; k < found.count; ++k) {
+        const double z = found.points[static_cast<std::size_t>(k)].p_W.z();
+        EXPECT_NEAR(std::abs(z - 0.5 * kShift), kHalf - 0.5 * kShift, 1e-5) << i;  // turned by 2e-5 of it at most
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pincer::contact
