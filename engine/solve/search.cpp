@@ -154,23 +154,23 @@ class Search {
     if (squeezes(scratch_.best_r)) soften(round);
   }
 
-  // An answer that is good enough already, brought to round-off: one that isn't feeds the next tick's error.
+  // An answer that is good enough already, brought to round-off: one that isn't feeds the next tick's error. Descents
+  // where a round fails: what is quiet hardly changes its shift.
   void polish(ProximalRound& round) {
-    double epsilon = kPolishEpsilon;
+    bool follows = true;
     for (int n = 0; n < kPolishRounds && best_.residual > kStrictness * options_.tolerance && !isSpent(); ++n) {
-      const double before = best_.residual;
-      if (round.solve(Shift::kFollows, {epsilon, left(), stepsOf(kMostRoundSteps)}, result_.iterations)) {
-        recentre();
-        if (!(best_.residual < 0.5 * before)) break;
-      } else {
-        epsilon *= kHarder;
-      }
+      const double before = best_.residual, epsilon = follows ? kPolishEpsilon : kFirstDescent;
+      const int steps = stepsOf(follows ? kMostRoundSteps : kMostDescentSteps);
+      const Shift shift = follows ? Shift::kFollows : Shift::kFrozen;
+      const bool is_done = round.solve(shift, {epsilon, left(), steps}, result_.iterations);
+      if (is_done) recentre();
+      if (is_done ? !(best_.residual < 0.5 * before) : !follows) break;
+      follows = is_done && follows;
     }
     result_.method = SolveMethod::kNewton;
   }
 
-  // The round's answer becomes the next one's centre.
-  void recentre() {
+  void recentre() {  // at the round's answer
     scratch_.centre.swap(scratch_.r);
     look();
   }

@@ -49,8 +49,9 @@ std::span<const ContactMemory> recallContacts(std::span<const ContactMemory> mem
 // Recalls the contacts, which are sorted, and fills first_row, q, mu and the warm start r, in their order.
 void fillContacts(const WorldModel& model, const WorldState& state, WorldScratch& scratch);
 
-// Fills what contact i gets to know by its solution in scratch.r and u: r, impulse_W, u_C, sliding.
-void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, Contact& c);
+// Fills what contact i gets to know by its solution in scratch.r and u, which is off by `error` [m/s]: r, impulse_W,
+// u_C, sliding.
+void readSolution(const WorldModel& model, const WorldScratch& scratch, int i, double error, Contact& c);
 
 // Writes what the contacts are to remember, and puts what sleeping ones remember among it (island_sleep.h); notes
 // which of them a tick changed nothing of.

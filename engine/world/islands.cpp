@@ -247,7 +247,7 @@ void scatter(const IslandScratch& s, const Island& island, const WorldModel& mod
       r_k += rows;
       u_k += rows;
     }
-    readSolution(model, scratch, i, contacts[i]);
+    readSolution(model, scratch, i, island.result.error, contacts[i]);
   }
 }
 

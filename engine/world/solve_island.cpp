@@ -64,6 +64,7 @@ class IslandSolve {
     if (island_.contacts > kFewContacts) findRoundContacts(memory_.round, problem_);
     is_loop_&& scratch_.h > 0 ? solveLoop() : solveOne();
     if (isInexact()) polish();
+    if (stirs()) settle();
     if (scratch_.h > 0 && memory_.operations_left >= 0 && isWedged(problem_, island_.r, island_.result)) {
       fit(PushingBy::kWedged);
       std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
@@ -229,6 +230,32 @@ class IslandSolve {
     island_.result.converged = true;
     island_.result.method = first.method;
   }
+
+  // True if contacts that contradict each other, by less than their solver minds, keep from rest what hardly moves.
+  bool stirs() const {
+    const SolveResult& found = island_.result;
+    return scratch_.h > 0 && island_.contacts <= kFewContacts && found.converged && found.give == 0 &&
+           found.residual > options_.tolerance && memory_.operations_left >= 0 && hardlyMoves();
+  }
+  bool hardlyMoves() const {
+    const auto is_slow = [](const MoverScratch& mover) {
+      return mover.start.v_W.squaredNorm() < kClosingSpeed * kClosingSpeed;
+    };
+    return std::all_of(order_.begin(), order_.end(), [&](int n) {
+      const Contact& c = scratch_.contacts[static_cast<std::size_t>(n)];
+      return is_slow(*c.mover_a) && is_slow(*c.mover_b);
+    });
+  }
+  // Asks for a motion that exists instead.
+  void settle() {
+    const SolveResult first = island_.result;
+    keepAnswer();
+    fit(PushingBy::kImpulses);
+    solveAgain(options_);
+    if (island_.result.converged) return;
+    takeKeptAnswer();
+    island_.result = first;
+  }
   void searchOn() {
     const SolveResult first = island_.result;
     island_.result = searchImpulses(problem_, options_, memory_, island_.r, island_.u);
@@ -343,9 +370,10 @@ class IslandSolve {
   // Share of the budget kept for stopOnly: support doesn't depend on it.
   std::int64_t reserveForStops() const { return kStoppingSweeps * kPerContactSwept * island_.contacts; }
   double offsetRate() const { return scratch_.h > 0 ? kTangentCorrection / tick_ : 0; }
+  // Or nothing was done for it: a residual is one of the fastest gap that closes, and may hide what sinks.
   bool isLost() const {
-    return !island_.result.converged && !island_.result.yields &&
-           island_.result.residual > (island_.contacts > kFewContacts ? kHeapLost : kLost);
+    const double most = island_.contacts > kFewContacts ? kHeapLost : kLost;
+    return !isAnswered() && (island_.result.residual > most || island_.result.iterations == 0);
   }
 
   const WorldModel& model_;
