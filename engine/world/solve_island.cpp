@@ -30,6 +30,7 @@ constexpr int kStoppingSweeps = 30;                      // instead
 constexpr double kTakenOver = 0.9;                       // of the last tick's impulses: from below, or columns hop
 constexpr std::int64_t kPushOperations = 50'000;         // multiplications per contact, twice what was needed
 constexpr double kMostPushed = 10 * kLargestCorrection;  // of what is pushed out, chosen [m/s]
+constexpr double kStirring = 100;      // times the tolerance, chosen: residuals that are less come and go by themselves
 constexpr double kLargestGive = 1e-4;  // by which contacts around loops of bodies may contradict each other [m/s]
 
 class IslandSolve {
@@ -235,7 +236,7 @@ class IslandSolve {
   bool stirs() const {
     const SolveResult& found = island_.result;
     return scratch_.h > 0 && island_.contacts <= kFewContacts && found.converged && found.give == 0 &&
-           found.residual > options_.tolerance && memory_.operations_left >= 0 && hardlyMoves();
+           found.residual > kStirring * options_.tolerance && memory_.operations_left >= 0 && hardlyMoves();
   }
   bool hardlyMoves() const {
     const auto is_slow = [](const MoverScratch& mover) {
