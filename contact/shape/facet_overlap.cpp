@@ -184,8 +184,9 @@ void clipFacet(const FlatFacet& facet, const FlatFacet& clipper, bool clipper_is
   }
 }
 
-// True of lines of round walls, or of one and an edge, that cross at so small an angle that they touch all along: there
-// they are hardly nearer to each other than at the ends, and round-off would move the place from end to end.
+// True of two round walls whose lines cross at so small an angle that they touch all along: there they are hardly
+// nearer to each other than at the ends, and round-off would move the place from end to end.
+//   radii  of both walls together [m], 0 unless both are round
 bool touchAllAlong(const Vec2& a, const Vec2& b, double radii, double size) {
   constexpr double kNearer = 1e-7;  // of the size
   const double aside = std::abs(cross(a, b)) / std::max(a.norm(), b.norm());
@@ -199,7 +200,8 @@ void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance,
   const Vec2 a = fa.corner(1).x - a0, b = fb.corner(1).x - b0;
   const double sine = cross(a, b), lengths = a.norm() * b.norm();
   const double radii = fa.line_radius + fb.line_radius;
-  if (std::abs(sine) > kNoAngle * lengths && !touchAllAlong(a, b, radii, size)) {
+  const bool are_round = fa.line_radius > 0 && fb.line_radius > 0;
+  if (std::abs(sine) > kNoAngle * lengths && !touchAllAlong(a, b, are_round ? radii : 0, size)) {
     const double s = cross(b0 - a0, b) / sine, t = cross(b0 - a0, a) / sine;
     const double slack_a = tolerance / a.norm(), slack_b = tolerance / b.norm();
     if (s >= -slack_a && s <= 1 + slack_a && t >= -slack_b && t <= 1 + slack_b)
