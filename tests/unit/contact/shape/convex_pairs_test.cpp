@@ -259,7 +259,8 @@ TEST(ConvexPairs, RoundWallsThatAreAllButParallelTouchAtTheEndsOfWhatTheyShare) 
   const auto tilted = [&](double angle) { return about(direction(random), random.uniform(-angle, angle)); };
   for (const Shape& shape : {Shape(Cylinder{kRadius, kHalf}), Shape(Capsule{kRadius, kHalf})}) {
     for (int i = 0; i < 500; ++i) {
-      const Pose X_WA{tilted(2e-5), {2 * kRadius + random.uniform(-1e-9, 1e-9), 0, kShift}}, X_WB{tilted(2e-5), {}};
+      const Pose X_WA{tilted(2e-5), {2 * kRadius + random.uniform(-1e-9, 1e-9), 0, kShift}};
+      const Pose X_WB{tilted(2e-5), Vec3::Zero()};
       const PairPoints found = collide(shape, X_WA, shape, X_WB, 1e-4);
       ASSERT_EQ(found.count, 2) << i;
       for (int k = 0; k < found.count; ++k) {
