@@ -47,7 +47,7 @@ TEST(Stress, WorldsThatOnceFailedHold) {
   // with new memory sleeping bricks went on otherwise: what flew elsewhere said which of their open contacts are solved
   for (const std::uint64_t seed : {12, 57, 74}) run("stress/hit", seed);
   for (const std::uint64_t seed : {99, 161}) run("stress/hit", seed);  // a second attempt turned them by round-off
-  // of contacts whose impulse lay a millionth inside of its cone 30 mm of slip were remembered as stick
+  // of contacts whose impulse lay a millionth inside of its cone 36 mm of slip were remembered as stick
   run("stress/hit", 9238);
   // fingers that wake what they touch looked at it twice
   for (const std::uint64_t seed : {22, 58, 100, 195}) run("stress/coarse", seed);
