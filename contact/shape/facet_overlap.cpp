@@ -5,30 +5,11 @@
 
 #include "pincer/contact/functions/invariants.h"
 #include "pincer/contact/shape/point_choice.h"
+#include "pincer/contact/shape/shared_outline.h"
 #include "pincer/contact/shape/tolerances.h"
 
 namespace pincer::contact {
 namespace {
-
-enum : std::uint32_t { kCornerOfA = 0, kCornerOfB = 1, kCrossing = 2, kSupports = 3 };
-std::uint32_t featureOf(std::uint32_t kind, std::uint32_t a, std::uint32_t b) { return kind << 28 | a << 14 | b; }
-
-// A facet seen along n: places across n, and its height as an affine function of them.
-struct FlatCorner {
-  Vec2 x;
-  std::uint32_t feature;
-  std::uint32_t edge;  // to the next corner, in the facet's own names
-};
-struct FlatFacet {
-  std::array<FlatCorner, Facet::kMost> corners;  // counter-clockwise seen against n
-  int count = 0;
-  Vec2 x0 = Vec2::Zero(), slope = Vec2::Zero();
-  double z0 = 0;
-  double line_radius = 0;  // as Facet's
-
-  const FlatCorner& corner(int i) const { return corners[static_cast<std::size_t>(i)]; }
-  double height(const Vec2& x) const { return z0 + slope.dot(x - x0); }
-};
 
 struct View {
   Mat3 R;  // columns t1, t2, n
@@ -52,7 +33,7 @@ void flatten(const PosedSolid& solid, const Facet& facet, double sign, const Vie
   const auto corner = [&](int i) -> const FacetCorner& { return facet.corners[static_cast<std::size_t>(i)]; };
   const auto named = [&](int i, int edge) -> FlatCorner {
     const std::uint32_t name = corner(i).vertex;
-    return {Vec2::Zero(), featureOfCorner(kind == kCornerOfA, name), corner(edge).edge};
+    return {Vec2::Zero(), featureOfCorner(kind == kCornerOfA, name), corner(edge).edge, facet.isStraight(edge)};
   };
   const auto placeOf = [&](int i) { return solid.place(corner(i).p); };
   if (facet.count > 2) {
@@ -82,154 +63,6 @@ void flatten(const PosedSolid& solid, const Facet& facet, double sign, const Vie
   out.slope = (view.along(placeOf(1)) - out.z0) / chord.squaredNorm() * chord;
   out.corners[1] = end;
   out.count = 2;
-}
-
-struct Corner {
-  Vec2 x;
-  std::uint32_t feature;
-};
-
-// At most: the corners of one facet, and two for each edge of the other.
-constexpr int kMostShared = 3 * Facet::kMost;
-struct Shared {
-  std::array<Corner, kMostShared> corners;
-  int count = 0;
-
-  void add(const Vec2& x, std::uint32_t feature) {
-    if (count < kMostShared) corners[static_cast<std::size_t>(count++)] = {x, feature};
-  }
-};
-
-// The line along the edge that begins at corner j of `f`.
-struct EdgeLine {
-  Vec2 from, edge;
-  double length;
-
-  EdgeLine(const FlatFacet& f, int j)
-      : from(f.corner(j).x), edge(f.corner(j + 1 < f.count ? j + 1 : 0).x - from), length(edge.norm()) {}
-  // how far `x` is to its left [m]
-  double leftOf(const Vec2& x) const { return length > 0 ? cross(edge, x - from) / length : 0; }
-};
-
-// A polygon being clipped: each edge belongs to the facet that is clipped, or lies on an edge of the clipping one.
-struct ClipCorner {
-  Vec2 x;
-  std::uint32_t feature;
-  std::uint32_t edge;
-  int clip;  // place of the clipping edge that the edge to the next corner lies on; -1 for the facet's own
-};
-struct ClipPolygon {
-  std::array<ClipCorner, kMostShared> corners;
-  int count = 0;
-
-  void add(const ClipCorner& c) {
-    if (count < kMostShared) corners[static_cast<std::size_t>(count++)] = c;
-  }
-};
-
-// The name of the point where the clipping edge j meets the edge that `c` begins: a
-// crossing, or a corner of the clipping facet.
-std::uint32_t nameOfCut(const ClipCorner& c, const FlatFacet& clipper, int j, bool clipper_is_a) {
-  if (c.clip < 0) {
-    const std::uint32_t other = clipper.corner(j).edge;
-    return clipper_is_a ? featureOf(kCrossing, other, c.edge) : featureOf(kCrossing, c.edge, other);
-  }
-  return clipper.corner((c.clip + 1) % clipper.count == j ? j : c.clip).feature;
-}
-
-// False where nothing of `in` is beyond the edge: then `out` isn't written.
-bool clipBy(const FlatFacet& clipper, int j, bool clipper_is_a, double tolerance, const ClipPolygon& in,
-            ClipPolygon& out) {
-  const EdgeLine line(clipper, j);
-  std::array<double, kMostShared> left;
-  bool all_in = true;
-  for (int i = 0; i < in.count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    left[at] = line.leftOf(in.corners[at].x);
-    all_in = all_in && left[at] >= -tolerance;
-  }
-  if (all_in) return false;
-  out.count = 0;
-  for (int i = 0; i < in.count; ++i) {
-    const auto at = static_cast<std::size_t>(i), after = static_cast<std::size_t>(i + 1 < in.count ? i + 1 : 0);
-    const ClipCorner &c = in.corners[at], &next = in.corners[after];
-    const double here = left[at], there = left[after];
-    const bool is_in = here >= -tolerance, next_in = there >= -tolerance;
-    if (is_in) out.add(c);
-    if (is_in == next_in) continue;
-    const double t = std::clamp(here / (here - there), 0.0, 1.0);
-    // Leaving, the outline goes on along the clipping edge; entering, along its own.
-    ClipCorner cut{c.x + t * (next.x - c.x), nameOfCut(c, clipper, j, clipper_is_a), c.edge, c.clip};
-    if (is_in) cut.clip = j;
-    out.add(cut);
-  }
-  return true;
-}
-
-// Of polygon and polygon, or of segment and polygon (a segment is clipped as a polygon there and back).
-void clipFacet(const FlatFacet& facet, const FlatFacet& clipper, bool clipper_is_a, double tolerance, Shared& out) {
-  std::array<ClipPolygon, 2> polygons;
-  ClipPolygon *from = &polygons[0], *to = &polygons[1];
-  for (int i = 0; i < facet.count; ++i)
-    from->add({facet.corner(i).x, facet.corner(i).feature, facet.corner(i).edge, -1});
-  for (int j = 0; j < clipper.count && from->count > 0; ++j) {
-    if (clipBy(clipper, j, clipper_is_a, tolerance, *from, *to)) std::swap(from, to);
-  }
-  for (int i = 0; i < from->count; ++i) {
-    const ClipCorner& c = from->corners[static_cast<std::size_t>(i)];
-    const auto isSame = [&](const Corner& other) {
-      return other.feature == c.feature || (other.x - c.x).squaredNorm() <= tolerance * tolerance;
-    };
-    if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame)) out.add(c.x, c.feature);
-  }
-}
-
-// True of two round walls whose lines cross at so small an angle that they touch all along: there they are hardly
-// nearer to each other than at the ends, and round-off would move the place from end to end.
-//   radii  of both walls together [m], 0 unless both are round
-bool touchAllAlong(const Vec2& a, const Vec2& b, double radii, double size) {
-  constexpr double kNearer = 1e-7;  // of the size
-  const double aside = std::abs(cross(a, b)) / std::max(a.norm(), b.norm());
-  return aside * aside < 2 * radii * kNearer * size;
-}
-
-// The part of segment f that lies over the segment g, measured along f: the ends of f or the feet of g's ends; and
-// where they cross, without ends within kOnePoint of that: of two such now one, now the other would carry.
-void overlapSegments(const FlatFacet& fa, const FlatFacet& fb, double tolerance, double size, Shared& out) {
-  const Vec2 a0 = fa.corner(0).x, b0 = fb.corner(0).x;
-  const Vec2 a = fa.corner(1).x - a0, b = fb.corner(1).x - b0;
-  const double sine = cross(a, b), lengths = a.norm() * b.norm();
-  const double radii = fa.line_radius + fb.line_radius;
-  const bool are_round = fa.line_radius > 0 && fb.line_radius > 0;
-  if (std::abs(sine) > kNoAngle * lengths && !touchAllAlong(a, b, are_round ? radii : 0, size)) {
-    const double s = cross(b0 - a0, b) / sine, t = cross(b0 - a0, a) / sine;
-    const double slack_a = tolerance / a.norm(), slack_b = tolerance / b.norm();
-    if (s >= -slack_a && s <= 1 + slack_a && t >= -slack_b && t <= 1 + slack_b)
-      out.add(a0 + std::clamp(s, 0.0, 1.0) * a, featureOf(kCrossing, fa.corner(0).edge, fb.corner(0).edge));
-  }
-  if (std::abs(sine) > kNearlyParallelEdges * lengths) return;
-  // `share`: of the way to the other line after which the two walls are as steep as each other.
-  const auto addEnd = [&](const FlatCorner& end, const Vec2& from, const Vec2& line, double share) {
-    const double at = (end.x - from).dot(line) / line.squaredNorm();
-    const double slack = tolerance / line.norm();
-    if (at < -slack || at > 1 + slack) return;
-    const Vec2 beside = from + at * line - end.x;
-    if (beside.norm() > tolerance + radii) return;
-    const Vec2 x = end.x + share * beside;
-    const auto isSame = [&](const Corner& other) { return (other.x - x).norm() <= kOnePoint * size; };
-    if (std::none_of(out.corners.begin(), out.corners.begin() + out.count, isSame)) out.add(x, end.feature);
-  };
-  const double share_a = radii > 0 ? fa.line_radius / radii : 0.5;
-  for (int i = 0; i < 2; ++i) addEnd(fa.corner(i), b0, b, share_a);
-  for (int i = 0; i < 2; ++i) addEnd(fb.corner(i), a0, a, 1 - share_a);
-}
-
-void share(const FlatFacet& fa, const FlatFacet& fb, double tolerance, double size, Shared& out) {
-  if (fa.count == 1) return out.add(fa.corner(0).x, fa.corner(0).feature);
-  if (fb.count == 1) return out.add(fb.corner(0).x, fb.corner(0).feature);
-  if (fa.count == 2 && fb.count == 2) return overlapSegments(fa, fb, tolerance, size, out);
-  if (fb.count > 2) return clipFacet(fa, fb, false, tolerance, out);
-  clipFacet(fb, fa, true, tolerance, out);
 }
 
 // The points as the choice sees them: a flat support whose gap at each is known.
@@ -278,7 +111,7 @@ struct Heights {
   std::array<double, kMostShared> top, bottom;
   double least_gap;
 
-  void measure(const Shared& shared, const Surfaces& surfaces) {
+  void measure(const SharedOutline& shared, const Surfaces& surfaces) {
     least_gap = kInfinity;
     for (int i = 0; i < shared.count; ++i) {
       const auto at = static_cast<std::size_t>(i);
@@ -333,13 +166,13 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   flatten(b, facet_b, 1, view, kCornerOfB, size, fb);
   const Surfaces surfaces(a, b, fa, fb, view);
   const double least = along.gap - surfaces.roundings();
-  Shared shared;
+  SharedOutline shared;
   Heights heights;
   bool found = false, exactly = false;
   for (double slack = kSamePlace; slack < 2e-4 && !found;
        slack *= 10) {  // the direction may be right to round-off only
     shared.count = 0;
-    share(fa, fb, slack * size, size, shared);
+    shareOutline(fa, fb, slack * size, size, shared);
     heights.measure(shared, surfaces);
     found = heights.least_gap < least + slack * size;
     exactly = exactly || (found && slack == kSamePlace);
@@ -356,7 +189,7 @@ bool overlapFacets(const PosedSolid& a, const PosedSolid& b, const Separation& a
   const double beside = found ? heights.least_gap - least : 0;  // an effect of the slack
   for (int i = 0; i < shared.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const Corner& c = shared.corners[at];
+    const SharedCorner& c = shared.corners[at];
     const double top = heights.top[at], bottom = heights.bottom[at];
     gaps[at] = found ? std::max(top - bottom - std::max(beside, 0.0), least) : least;
     points[at] = surfaces.place(c.x, 0.5 * (top + bottom));

@@ -10,7 +10,8 @@
 // lie on both surfaces. This holds face on face, edge on face, edge on edge and corner on face alike; nothing is
 // remembered from tick to tick but which points were kept. Two walls side by side whose lines cross at a small angle
 // touch at the crossing, and near the ends of what they share, there where one is as steep as the other; at the ends
-// alone where the crossing is nearer than they are by less than 1e-7 of the size. The end of a
+// alone where the crossing is nearer than they are by less than 1e-7 of the size. So does a wall whose line leaves a
+// polygon over an edge that is nearly parallel to it: what is beyond lies beside that edge. The end of a
 // cylinder is a polygon of 16 corners, with more where the other body comes near the rim between two of them. Of more
 // than four points up to four are kept (point_choice.h). A point's feature is made of the names of corners and edges
 // (convex_features.h), so it stays while these touch. A corner of A counts as within B's facet up to kSamePlace of the

@@ -271,5 +271,28 @@ TEST(ConvexPairs, RoundWallsThatAreAllButParallelTouchAtTheEndsOfWhatTheyShare) 
   }
 }
 
+// The end that lay beside the edge by a micrometre was found in one tick and not in the next: cubes rocked on cans.
+TEST(ConvexPairs, ARoundWallThatLiesAlongAnEdgeTouchesAtBothEndsOfWhatTheyShare) {
+  constexpr double kRadius = 0.01, kHalf = 0.02, kTilt = 1e-4;
+  const Box box{{0.01, 0.01, 0.025}};
+  RandomNumbers random(7);
+  for (const Shape& shape : {Shape(Cylinder{kRadius, kHalf}), Shape(Capsule{kRadius, kHalf})}) {
+    for (int i = 0; i < 500; ++i) {
+      const double angle = random.uniform(0.3, 1.2), reach = kRadius + random.uniform(-1e-6, 1e-6);
+      const Vec3 from_edge = Vec3(std::cos(angle), std::sin(angle), 0) * reach;
+      const Pose X_WA{about(direction(random), random.uniform(-kTilt, kTilt)), Vec3(0.01, 0.01, 0) + from_edge};
+      const PairPoints found = collide(box, Pose{}, shape, X_WA, 1e-4);
+      double low = 0, high = 0;
+      for (int k = 0; k < found.count; ++k) {
+        const double z = found.points[static_cast<std::size_t>(k)].p_W.z();
+        low = std::min(low, z);
+        high = std::max(high, z);
+      }
+      EXPECT_NEAR(low, -kHalf, 1e-5) << i;  // turned by 1e-4 of the radius at most
+      EXPECT_NEAR(high, kHalf, 1e-5) << i;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace pincer::contact
