@@ -146,7 +146,7 @@ class BesideEdges {
   void add() {
     for (int j = 0; j < polygon_.count; ++j) {
       const EdgeLine edge(polygon_, j);
-      if (polygon_.corner(j).is_straight && isAlong(edge) && (isBeside(edge, begin()) || isBeside(edge, end())))
+      if (polygon_.corner(j).is_straight && isAlong(edge) && (leaves(edge, begin()) || leaves(edge, end())))
         addAlong(edge, j);
     }
   }
@@ -159,9 +159,10 @@ class BesideEdges {
   bool isAlong(const EdgeLine& edge) const {
     return edge.length > 0 && std::abs(cross(edge.edge, way())) <= kNearlyParallelEdges * edge.length * way().norm();
   }
+  bool leaves(const EdgeLine& edge, const Vec2& x) const { return edge.leftOf(x) < -tolerance_; }
   bool isBeside(const EdgeLine& edge, const Vec2& x) const {
     const double left = edge.leftOf(x);
-    return left < -tolerance_ && left > -line_.line_radius;
+    return left <= tolerance_ && left > -line_.line_radius;
   }
   std::uint32_t crossingOf(int edge) const {
     const std::uint32_t other = polygon_.corner(edge).edge, own = line_.corner(0).edge;

@@ -33,15 +33,22 @@ inline std::set<std::uint32_t> featuresOf(const contact::PairPoints& p) {
   return features;
 }
 
-// b at the origin, a somewhere around it, about `gap` [m] from it (negative: overlapping by so much).
-inline Pose around(RandomNumbers& random, const contact::Shape& a, const contact::Shape& b, double gap) {
-  Pose X_BA{rotation(random), 0.1 * direction(random)};
+// b at the origin, a turned by `q` in that direction from it, about `gap` [m] from it (negative: overlapping by so much).
+inline Pose besideAt(const Quat& q, const Vec3& direction, const contact::Shape& a, const contact::Shape& b,
+                     double gap) {
+  Pose X_BA{q, 0.1 * direction};
   for (int i = 0; i < 8; ++i) {
     const contact::PosedSolid A{a, X_BA.q.toRotationMatrix(), X_BA.p}, B{b, Mat3::Identity(), Vec3::Zero()};
     const contact::Separation s = contact::separate(A, B, 0.03);
     X_BA.p += (gap - s.gap + contact::roundingOf(a) + contact::roundingOf(b)) * s.n;
   }
   return X_BA;
+}
+
+// The same of any pose.
+inline Pose around(RandomNumbers& random, const contact::Shape& a, const contact::Shape& b, double gap) {
+  const Quat q = rotation(random);
+  return besideAt(q, direction(random), a, b, gap);
 }
 
 }  // namespace pincer::tests
