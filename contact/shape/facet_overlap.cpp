@@ -127,7 +127,8 @@ bool isLevel(const PosedSolid& solid, const Facet& polygon, const Vec3& d_W, dou
   return polygon.count > 2 && polygon.n.cross(solid.inwards(d_W)).norm() * size <= kSameGap;
 }
 
-// Where what faces the end of a cylinder comes near the rim between two of its corners, one more is added.
+// Where an edge of what faces the end of a cylinder comes near the rim between two of its corners, one more is added;
+// of edges that are all beyond the rim, where the nearest comes.
 void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& faced, const Vec3& d_W, double size,
               Facet& end) {
   if (!(end.rim_radius > 0)) return;
@@ -143,9 +144,10 @@ void reachOut(const PosedSolid& cylinder, const PosedSolid& other, const Facet& 
     const Vec2 side = seen(other.place(faced.corners[static_cast<std::size_t>((i + 1) % faced.count)].p)) - from;
     const double t = side.squaredNorm() > 0 ? std::clamp(-from.dot(side) / side.squaredNorm(), 0.0, 1.0) : 0;
     const Vec2 q = from + t * side;
+    if (q.norm() < end.rim_radius * (1 + kSamePlace)) addRimCorner(q, end);
     if (q.squaredNorm() < nearest.squaredNorm()) nearest = q;
   }
-  addRimCorner(nearest, end);
+  if (nearest.norm() > end.rim_radius) addRimCorner(nearest, end);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ inline std::set<std::uint32_t> featuresOf(const contact::PairPoints& p) {
   return features;
 }
 
-// b at the origin, a turned by `q` in that direction from it, about `gap` [m] from it (negative: overlapping by so much).
+// b at the origin, a turned by `q` in that direction from it, about `gap` [m] from it (negative: it overlaps).
 inline Pose besideAt(const Quat& q, const Vec3& direction, const contact::Shape& a, const contact::Shape& b,
                      double gap) {
   Pose X_BA{q, 0.1 * direction};

@@ -1,4 +1,4 @@
-// Points of two convex solids that are all but parallel somewhere, before and after a motion of a tenth of a micrometre.
+// Points of two convex solids that are all but parallel, before and after a motion of a tenth of a micrometre.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,6 +66,7 @@ Quat nearlyAligned(const Shape& a, const Shape& b, RandomNumbers& random) {
 }
 
 // A can that lay along the edge of a cube lost one of its two places there for a tick, and hit when it was found again.
+// Where its rim touched an edge from within, one of a thousand was nowhere near.
 TEST(ConvexContinuity, ARoundWallLosesNoPlaceByATenthOfAMicrometre) {
   RandomNumbers random(1);
   for (const NamedShape& a : tests::sampleConvexSolids()) {
@@ -73,7 +74,8 @@ TEST(ConvexContinuity, ARoundWallLosesNoPlaceByATenthOfAMicrometre) {
       const bool is_asked = a.shape.index() <= b.shape.index() && (isRoundWalled(a.shape) || isRoundWalled(b.shape)) &&
                             !hasFlat(a.shape) && !hasFlat(b.shape);
       const double size = std::min(boundingRadius(a.shape), boundingRadius(b.shape));
-      for (int i = 0; is_asked && i < 200; ++i) {
+      const int most = !is_asked ? 0 : std::holds_alternative<Convex>(b.shape) ? 2000 : 200;
+      for (int i = 0; i < most; ++i) {
         const Quat q = nearlyAligned(a.shape, b.shape, random);
         const Pose X_WA = tests::besideAt(q, direction(random), a.shape, b.shape, random.uniform(-1e-7, 1e-7));
         const PairPoints before = collide(a.shape, X_WA, b.shape, Pose{}, kWithin);
