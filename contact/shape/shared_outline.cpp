@@ -146,7 +146,7 @@ class BesideEdges {
   void add() {
     for (int j = 0; j < polygon_.count; ++j) {
       const EdgeLine edge(polygon_, j);
-      if (polygon_.corner(j).is_straight && isAlong(edge) && (leaves(edge, begin()) || leaves(edge, end())))
+      if (polygon_.corner(j).is_straight && (leaves(edge, begin()) || leaves(edge, end())) && isAlong(edge))
         addAlong(edge, j);
     }
   }

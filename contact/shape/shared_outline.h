@@ -12,7 +12,8 @@
 
 namespace pincer::contact {
 
-// A facet seen along n: places across n, and its height as an affine function of them.
+// A facet seen along n: places across n, and its height along n as an affine function of them, in the frame that
+// overlapFacets looks in [m].
 struct FlatCorner {
   Vec2 x;
   std::uint32_t feature;
@@ -24,19 +25,20 @@ struct FlatFacet {
   int count = 0;
   Vec2 x0 = Vec2::Zero(), slope = Vec2::Zero();
   double z0 = 0;
-  double line_radius = 0;  // as Facet's
+  double line_radius = 0;  // as Facet's [m]
 
   const FlatCorner& corner(int i) const { return corners[static_cast<std::size_t>(i)]; }
   double height(const Vec2& x) const { return z0 + slope.dot(x - x0); }
 };
 
 enum : std::uint32_t { kCornerOfA = 0, kCornerOfB = 1, kCrossing = 2, kSupports = 3 };
+// A point's name, by those of a's and b's corner or edge; each below 2^14.
 constexpr std::uint32_t featureOf(std::uint32_t kind, std::uint32_t a, std::uint32_t b) {
   return kind << 28 | a << 14 | b;
 }
 
 struct SharedCorner {
-  Vec2 x;
+  Vec2 x;  // across n [m]
   std::uint32_t feature;
 };
 
