@@ -24,8 +24,8 @@
 //
 // Enough is the tolerance, and of more than kFewContacts: options.accuracy, or kShareOfSlip of the fastest slip of what
 // pushes [m/s]; a looser accuracy than the default counts up to kShareOfSlow of that slip; a hundred times the default
-// where all is swept. Below it a heap that still moves isn't solved further; one that is quiet is, to round-off, so
-// that it comes to rest.
+// where all is swept. Below it a heap that still moves isn't solved further; one that is quiet is, to round-off, or at
+// a looser accuracy to restErrorOf, so that it comes to rest.
 //
 // A body that has come to rest under impulses that are off by less than the tolerance drifts until they
 // aren't, then is put right, in a cycle without end. So after an answer that took iterations the next ones

@@ -8,37 +8,12 @@
 #include "pincer/engine/solve/few_contacts.h"
 #include "pincer/engine/solve/proximal_round.h"
 #include "pincer/engine/solve/residual.h"
+#include "pincer/engine/solve/search_parameters.h"
 #include "pincer/engine/solve/squeeze.h"
 #include "pincer/engine/solve/sweeps.h"
 
 namespace pincer::engine {
 namespace {
-
-// The parameters of the search; docs/engine.md gives their reasons.
-constexpr double kLeastEpsilon = 1e-5, kFirstEpsilon = 0.1, kMostEpsilon = 1;  // e over w: range, and the first at most
-constexpr double kEpsilonOfError = 1e3;               // the first is that times the start's error [s/m]
-constexpr double kSliding = 1e4;                      // of the accuracy: fast slips
-constexpr double kLeft = 0.1;                         // of what is enough, and of the error before: a round's own error
-constexpr double kFirstDescent = 1e-2;                // epsilon of descents, at most
-constexpr double kRough = 1e-2, kMostlyGive = 0.3;    // a descent's error, of its start's; a give, of its error
-constexpr int kDescents = 6, kMostDescentSteps = 30;  // at a time; of one
-constexpr double kShareOfSlip = 3e-4;                 // of what pushes: below it, in motion, errors don't show
-constexpr double kShareOfSlow = 0.1;  // of that slip: what is more would keep it from rest, however loose the accuracy
-constexpr double kSwept = 3e-4;       // of the problem's speeds: an error that sweeps reach for less than steps
-constexpr int kSweepsAtATime = 16;    // they cost two steps
-
-constexpr int kProductsPerRoundContact = 3;                                      // a row of balls in a groove takes one
-constexpr std::int64_t kPerContactLooked = 150, kFewestOperations = 60'000'000;  // multiplications; a search's, 80 ms
-constexpr int kMostFactorisations = 160;                // and their steps: beyond, the best iterate counts
-constexpr int kFewFactorisations[] = {80, 160, 480};    // of few contacts, by effort: 80 find 98 in a hundred
-constexpr double kHitSpeed = 3e6;                       // of the accuracy: problems of such speeds are hits
-constexpr int kHitSolves = 6, kPolishRounds = 3;        // that share a tick's hits; of what is quiet, to round-off
-constexpr double kPolishEpsilon = 1e-4, kQuiet = 1e-3;  // quiet: slip of what is about to rest, of the problem's speeds
-constexpr double kNear = 100;                           // of what is enough: a start that is nearer settles
-
-constexpr double kEasier = 0.2, kHarder = 10;  // times epsilon: after a round of a few steps, after one that failed
-constexpr int kEasySteps = 2;
-constexpr double kStillFading = 0.7, kFar = 3e-4;  // of a give or an error before; from where rounds rather fail [m/s]
 
 class Search {
  public:
@@ -57,7 +32,8 @@ class Search {
       look();
     }
     const auto centre = scratch_.centre.begin();
-    settles_ = error_.speed <= kNear * limit() || std::all_of(centre, centre + rows(), [](double x) { return x == 0; });
+    settles_ = error_.speed <= kNear * limitAt(finest()) ||
+               std::all_of(centre, centre + rows(), [](double x) { return x == 0; });
     if (squeezed) {
       goSoft();
     } else if (isEnough() && (isExact() || !isQuiet())) {
@@ -82,18 +58,20 @@ class Search {
   std::int64_t operationsLeft() const { return scratch_.operations_left - std::max<std::int64_t>(0, last_operation_); }
   bool isSpent() const { return operationsLeft() < 0; }
   bool isWithinTolerance() const { return error_.residual <= options_.tolerance; }
-  // As good as what rests asks for.
+  // As good as what rests asks for; of a looser accuracy than the default what doesn't move what rests is.
   bool isExact() const {
-    if (problem_.calm && error_.speed <= restErrorOf(options_)) return true;
+    if ((problem_.calm || isLoose()) && error_.speed <= restErrorOf(options_)) return true;
     const double exact = exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_));
     return isWithinTolerance() && (!problem_.strict || error_.residual <= exact);
   }
   // A looser accuracy than the default doesn't keep what is slow from rest, nor what slides from sweeps [m/s].
   double finest() const { return std::min(options_.accuracy, SolverOptions{}.accuracy); }
+  bool isLoose() const { return options_.accuracy > finest(); }
   // Error that is small enough [m/s].
-  double limit() const {
-    if (isFew() || options_.accuracy == 0) return restErrorOf(options_);
-    return std::max(kShareOfSlip * slip_, std::clamp(kShareOfSlow * slip_, finest(), options_.accuracy));
+  double limit() const { return limitAt(options_.accuracy); }
+  double limitAt(double accuracy) const {
+    if (isFew() || accuracy == 0) return restErrorOf(options_);
+    return std::max(kShareOfSlip * slip_, std::clamp(kShareOfSlow * slip_, finest(), accuracy));
   }
   // Of a round's own, at most [m/s]. Few go on to the tolerance as long as they get nearer.
   double left() const { return kLeft * std::max(isFew() ? 0 : limit(), options_.tolerance * referenceSpeed(problem_)); }
@@ -158,7 +136,7 @@ class Search {
   // where a round fails: what is quiet hardly changes its shift.
   void polish(ProximalRound& round) {
     bool follows = true;
-    for (int n = 0; n < kPolishRounds && best_.residual > kStrictness * options_.tolerance && !isSpent(); ++n) {
+    for (int n = 0; n < kPolishRounds && !isPolished() && !isSpent(); ++n) {
       const double before = best_.residual, epsilon = follows ? kPolishEpsilon : kFirstDescent;
       const int steps = stepsOf(follows ? kMostRoundSteps : kMostDescentSteps);
       const Shift shift = follows ? Shift::kFollows : Shift::kFrozen;
@@ -168,6 +146,11 @@ class Search {
       follows = is_done && follows;
     }
     result_.method = SolveMethod::kNewton;
+  }
+
+  bool isPolished() const {
+    if (isLoose() && best_.speed <= restErrorOf(options_)) return true;
+    return best_.residual <= kStrictness * options_.tolerance;
   }
 
   void recentre() {  // at the round's answer
@@ -373,12 +356,6 @@ class Search {
     result_.error = best_.speed;
     result_.converged = result_.method != SolveMethod::kNotConverged;
   }
-
-  static constexpr double kMostAccuracies = 100;  // of what is too entangled for anything but sweeps
-  static constexpr int kPatience = 3, kMostFailures = 12, kSoftSteps = 12;  // rounds, failures, Newton steps, chosen
-  static constexpr int kPatient = 10;             // times as much of everything, where there is time
-  static constexpr double kSoftestEpsilon = 0.1;  // the last of kSoftEpsilons
-  static constexpr double kSoftEpsilons[] = {1e-3, 1e-2, kSoftestEpsilon};  // [-], tried in turn; decades, chosen
 
   const ContactProblem& problem_;
   const SolverOptions& options_;
