@@ -94,19 +94,33 @@ class Search {
     std::copy(scratch_.u.data(), scratch_.u.data() + rows(), scratch_.best_u.data());
   }
 
-  // Between balls sweeps are so cheap that factors pay in rows, rings and trees of them only.
-  int mostProducts() const {
-    return problem_.round.empty() ? affordableProducts(problem_) : kProductsPerRoundContact * problem_.contactCount();
-  }
+  // Between balls sweeps are so cheap that factors pay in rows, rings and trees of them only, or where sweeps fail.
   void search() {
     if (scratch_.operations_left < 0) return sweep();
-    MoverMatrix matrix(problem_, scratch_, mostProducts());
-    if (!matrix.fits()) return sweep();
+    const bool is_round = !problem_.round.empty();
+    if (searchBy(is_round ? kProductsPerRoundContact * problem_.contactCount() : affordableProducts(problem_))) return;
+    sweep();
+    if (is_round && result_.method == SolveMethod::kNotConverged && problem_.movers <= kMostRoundMovers) searchOn();
+  }
+  // From where sweeps got no further: heavy bodies weigh on light balls.
+  void searchOn() {
+    has_swept_ = true;
+    result_.method = SolveMethod::kNoContact;  // yet
+    restart();
+    best_ = {};
+    look();
+    searchBy(affordableProducts(problem_));
+  }
+  // False if its factors don't fit.
+  bool searchBy(int products) {
+    MoverMatrix matrix(problem_, scratch_, products);
+    if (!matrix.fits()) return false;
     const std::int64_t before = scratch_.operations_left;
     last_operation_ = before - mostOperations(matrix);
     step_cost_ = matrix.costOfFactorisation();
     searchWith(matrix);
     if (isHit()) scratch_.hit_operations -= before - scratch_.operations_left;
+    return true;
   }
 
   // Bodies as fast as in a hit aren't worth the same share of their speed: a tick's work follows from its contacts.
@@ -114,6 +128,7 @@ class Search {
     return !isFew() && options_.accuracy > 0 && referenceSpeed(problem_) > kHitSpeed * options_.accuracy;
   }
   std::int64_t mostOperations(const MoverMatrix& matrix) const {
+    if (has_swept_ && !isPatient()) return kSweptFactorisations * matrix.costOfFactorisation() / scratch_.haste;
     if (isFew() && !isPatient())
       return kFewFactorisations[static_cast<int>(options_.effort)] * matrix.costOfFactorisation();
     const std::int64_t most = times() * std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
@@ -363,7 +378,8 @@ class Search {
   std::int64_t last_operation_ = 0, step_cost_ = 1;
   ContactError error_, best_;
   double slip_ = 0;
-  bool settles_ = false;  // the start is near, or none: else the next one will be as far off, whatever is done
+  bool has_swept_ = false;  // all that it may before factors
+  bool settles_ = false;    // the start is near, or none: else the next one will be as far off, whatever is done
   SolveResult result_;
 };
 

@@ -40,9 +40,12 @@ constexpr double kSoftEpsilons[] = {1e-3, 1e-2, kSoftestEpsilon};  // [-], tried
 
 // Work.
 constexpr int kProductsPerRoundContact = 3;  // between balls: a row of them in a groove takes one
+constexpr int kMostRoundMovers =
+    100;  // whose factors are sought after sweeps that failed: of more that costs a tenth of a tick
 constexpr std::int64_t kPerContactLooked = 150, kFewestOperations = 60'000'000;  // multiplications; a search's, 80 ms
 constexpr int kMostFactorisations = 160;              // and their steps: beyond, the best iterate counts
 constexpr int kFewFactorisations[] = {80, 160, 480};  // of few contacts, by effort: 80 find 98 in a hundred
+constexpr int kSweptFactorisations = 80;              // where sweeps failed: four in five are found
 constexpr int kPatient = 10;                          // times as much of everything, where there is time
 constexpr double kHitSpeed = 3e6;                     // of the accuracy: problems of such speeds are hits
 constexpr int kHitSolves = 6;                         // that share a tick's hits

@@ -257,7 +257,7 @@ std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
   const auto heap = [&](const std::string& name, Family::Make make, double seconds, int seeds = 1) {
     all.push_back(heapMeasurement(name, Family(std::move(make), seeds, seconds, peers)));
   };
-  const int seeds = whole ? 5 : 1;
+  const int seeds = whole ? 20 : 1;
   for (const auto& [columns, rows] : {std::pair(1, 1), {1, 5}, {2, 4}, {2, 9}, {3, 8}, {3, 10}, {10, 10}})
     wall(fmt::format("{}x{}", columns, rows), {.columns = columns, .rows = rows}, stands);
   for (const double mu : {0.3, 0.9}) wall(fmt::format("5x8-mu-{}", mu), {.columns = 5, .rows = 8, .mu = mu}, stands);
@@ -271,15 +271,19 @@ std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
       "heaps/discs-12", [](std::uint64_t seed) { return heapWorld(Falling::kDiscs, 12, seed); }, 2, seeds);
   heap(
       "hulls/50", [](std::uint64_t seed) { return hullWorld(50, seed); }, whole ? 3 : 1.5, seeds);
-  for (const double accuracy : {1e-4, 1e-3, 1e-2})  // the dial
+  const auto dial = [&](const std::string& name, double accuracy, double h) {
     heap(
-        fmt::format("hulls/50-accuracy-{}", accuracy),
+        "hulls/50-" + name,
         [=](std::uint64_t seed) {
           FamilyWorld world = hullWorld(50, seed);
           world.model.options.solver.accuracy = accuracy;
+          world.model.options.h = h;
           return world;
         },
         whole ? 3 : 1.5, seeds);
+  };
+  for (const double accuracy : {1e-4, 1e-3, 1e-2}) dial(fmt::format("accuracy-{}", accuracy), accuracy, 1e-3);
+  for (const double h : {2e-3, 4e-3}) dial(fmt::format("accuracy-0.01-tick-{}ms", 1e3 * h), 1e-2, h);
   for (const double play : {5e-5, 1e-4, 2e-4})
     heap(
         fmt::format("pegs/play-{}um", 1e6 * play), [=](std::uint64_t) { return pegWorld(play, 8e-3); }, 0.5);
