@@ -4,6 +4,8 @@
 // what is left of the tick is done in one part, however far bodies turn in it, with impulses that are best iterates:
 // its answer is flagged, and must not have more energy than there was. So must what driven bodies turn.
 #pragma once
+#include <algorithm>
+
 #include "pincer/engine/world/scratch.h"
 
 namespace pincer::engine {
@@ -14,15 +16,19 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
   if (isLimited(scratch)) scratch.operations_left -= operations;
 }
 
-// Work that solves of hits may take in a tick, per contact: beyond, no further hit cuts the tick. Each of six solves
-// ends with its share of it, one run of 16 sweeps: the best iterate counts, flagged.
-constexpr std::int64_t kHitOperations = 6'000;
+// Work that solves of hits may take in a tick, per contact, and of few contacts at least: beyond, no further hit cuts
+// the tick. Each of six solves ends with its share of it, one run of 16 sweeps in a wall, or 1 ms: the best iterate
+// counts, flagged.
+constexpr std::int64_t kHitOperations = 6'000, kFewestHitOperations = 12'000'000;
+inline std::int64_t mostHitOperations(std::int64_t contacts) {
+  return std::max(kFewestHitOperations, kHitOperations * contacts);
+}
 // So many contacts are a heap: hits run through it by the hundred, sooner than a tick can follow.
 constexpr int kHeapContacts = 100;
 inline bool isHeap(const WorldState& state) { return state.contact_count > kHeapContacts; }  // it was, in the last tick
 
 inline bool haveHitsSpent(const WorldScratch& scratch) {
-  return scratch.hit_operations > kHitOperations * static_cast<std::int64_t>(scratch.contacts.size());
+  return scratch.hit_operations > mostHitOperations(static_cast<std::int64_t>(scratch.contacts.size()));
 }
 
 // For a query of where two shapes touch: solids' facets are laid over each other, spheres need little.

@@ -54,7 +54,7 @@ class IslandSolve {
     const std::int64_t reserve = is_limited ? reserveForStops() : 0;
     memory_.operations_left = share - reserve;
     memory_.haste = hasteAfter(scratch_.solves);
-    memory_.hit_operations = kHitOperations * island_.contacts;
+    memory_.hit_operations = mostHitOperations(island_.contacts);
     island_.hit_operations = 0;
     if (!island_.has_sides && !(is_grip_ = readGrip(model_, scratch_, order_, grip_))) fillSides();
     if (problem_.calm) projectOntoCones(problem_, island_.r);
@@ -71,7 +71,7 @@ class IslandSolve {
       std::fill(island_.r, island_.r + island_.rows, 0.0);  // or the squeeze would stay
       solveAgain(options_);
     }
-    island_.hit_operations = kHitOperations * island_.contacts - memory_.hit_operations;
+    island_.hit_operations = mostHitOperations(island_.contacts) - memory_.hit_operations;
     if (island_.result.give > 0) {
       island_.as_asked = false;
       giveWay(scratch_.h, offsetRate(), problem_, memory_.give.data(), island_.q, order_, scratch_.contacts);
