@@ -268,7 +268,7 @@ std::vector<Measurement> familyMeasurements(bool whole, bool peers) {
   heap(
       "heaps/balls-100", [](std::uint64_t seed) { return ballWorld(100, 5, seed); }, 2);
   heap(
-      "heaps/discs-12", [](std::uint64_t seed) { return heapWorld(Falling::kDiscs, 12, seed); }, 2, seeds);
+      "heaps/discs-12", [](std::uint64_t seed) { return heapWorld(Falling::kDiscs, 12, seed); }, whole ? 3 : 2, seeds);
   heap(
       "hulls/50", [](std::uint64_t seed) { return hullWorld(50, seed); }, whole ? 3 : 1.5, seeds);
   const auto dial = [&](const std::string& name, double accuracy, double h) {
