@@ -6,6 +6,7 @@
 
 #include "pincer/engine/solve/cone.h"
 #include "pincer/engine/solve/proximal_round.h"
+#include "pincer/engine/solve/squeeze.h"
 
 namespace pincer::engine {
 namespace {
@@ -16,8 +17,6 @@ constexpr int kMostCorrections = 3;      // by the same factors
 // of contacts that give way: as long as a round isn't solved, more
 constexpr double kGivingEpsilon = 1e-2, kMoreEpsilon = 10;
 constexpr int kStepsPerRound = 12;
-// of contacts that are soft: the first with which Newton's method gets there
-constexpr double kSoftEpsilons[] = {1e-3, 1e-2, 0.1};
 constexpr double kFadesStill = 0.5;  // of the give of the round before
 // steps without a residual half as large as the best before, after which it won't come
 constexpr int kPatience = 5;

@@ -58,7 +58,7 @@ class Search {
   std::int64_t operationsLeft() const { return scratch_.operations_left - std::max<std::int64_t>(0, last_operation_); }
   bool isSpent() const { return operationsLeft() < 0; }
   bool isWithinTolerance() const { return error_.residual <= options_.tolerance; }
-  // As good as what rests asks for; of a looser accuracy than the default what doesn't move what rests is.
+  // As good as what rests asks for; at a looser accuracy than the default by as little as it may move.
   bool isExact() const {
     if ((problem_.calm || isLoose()) && error_.speed <= restErrorOf(options_)) return true;
     const double exact = exactResidual(options_.tolerance, problem_.noise, referenceSpeed(problem_));
@@ -224,7 +224,7 @@ class Search {
   void proceed(ProximalRound& round) {
     double epsilon = std::clamp(kEpsilonOfError * error_.speed, 10 * kLeastEpsilon, kFirstEpsilon);
     double give = std::numeric_limits<double>::infinity();
-    const int longest = kPatience * times();
+    const int longest = kRoundPatience * times();
     int patience = longest, failures = 0;
     while (!isAtGoal() && !isSpent()) {
       const int before = result_.iterations, most = kMostRoundSteps * (1 + failures);  // or the same would fail again

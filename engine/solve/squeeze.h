@@ -17,6 +17,9 @@ namespace pincer::engine {
 
 constexpr double kLargestSqueeze = 1e5;  // a wedge of a thousandth of a degree
 
+// e over w of contacts that are soft [-]: decades, chosen; the first with which Newton's method gets there counts.
+constexpr double kSoftestEpsilon = 0.1, kSoftEpsilons[] = {1e-3, 1e-2, kSoftestEpsilon};
+
 // True if the impulses `r` squeeze like that. `weight`: of the contacts, weighContacts (residual.h).
 bool isSqueezed(const ContactProblem& problem, const std::vector<double>& weight, const double* r);
 

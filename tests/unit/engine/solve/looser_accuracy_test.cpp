@@ -1,4 +1,4 @@
-// What the search leaves undone where the user asks for less than by default.
+// Accuracies looser than the default: what the search leaves undone.
 #include <gtest/gtest.h>
 
 #include "pincer/engine/solve/contact_solver.h"

@@ -200,8 +200,8 @@ Crate fallInto(double half, const contact::Shape& shape, int count, std::uint64_
   return crate;
 }
 
-// What spins at 3 m/s counted as hit, and hits of a hundred contacts had 0.1 ms: one tick in five was flagged, off by up
-// to 20 mm/s.
+// Sticks that spin at 3 m/s counted as hit, and hits of a hundred contacts had 0.1 ms: one tick in seven was flagged,
+// off by up to 20 mm/s.
 TEST(Heap, OfSticksIsSolvedWhileTheySpin) {
   int flagged = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
