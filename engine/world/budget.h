@@ -17,9 +17,9 @@ inline void charge(std::int64_t operations, WorldScratch& scratch) {
 }
 
 // Work that solves of hits may take in a tick, per contact, and of few contacts at least: beyond, no further hit cuts
-// the tick. Each of six solves ends with its share of it, one run of 16 sweeps in a wall, or 1 ms: the best iterate
+// the tick. Each of six solves ends with its share of it, one run of 16 sweeps in a wall, or 0.3 ms: the best iterate
 // counts, flagged.
-constexpr std::int64_t kHitOperations = 6'000, kFewestHitOperations = 12'000'000;
+constexpr std::int64_t kHitOperations = 6'000, kFewestHitOperations = 4'000'000;
 inline std::int64_t mostHitOperations(std::int64_t contacts) {
   return std::max(kFewestHitOperations, kHitOperations * contacts);
 }

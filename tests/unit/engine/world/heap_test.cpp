@@ -209,7 +209,7 @@ TEST(Heap, OfSticksIsSolvedWhileTheySpin) {
     WorldScratch scratch(crate.model);
     for (int tick = 0; tick < 600; ++tick) flagged += step(crate.model, crate.state, scratch).status != kStepOk;
   }
-  EXPECT_LT(flagged, 90);  // of 1,800, three times what it is
+  EXPECT_LT(flagged, 90);  // of 1,800; 59 are
 }
 
 // Layers of cubes of the given side [m], 3/20 of it apart, each laid with gaps and overlaps of up to `jitter` [m].
