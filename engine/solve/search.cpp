@@ -109,7 +109,7 @@ class Search {
     restart();
     best_ = {};
     look();
-    searchBy(affordableProducts(problem_));
+    if (!searchBy(affordableProducts(problem_))) conclude();
   }
   // False if its factors don't fit.
   bool searchBy(int products) {

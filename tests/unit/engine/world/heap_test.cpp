@@ -31,6 +31,12 @@ void addCrate(double half, WorldBuilder& builder, std::vector<BodyStart>& starts
   }
 }
 
+Crate crateOf(WorldBuilder& builder, const std::vector<BodyStart>& starts) {
+  Crate crate{builder.build(), {}};
+  crate.state = makeState(crate.model, starts, {});
+  return crate;
+}
+
 // Balls of 10 mm, or others of that size, `side` by `side` in layers, above the floor of a box. `start`: where each is
 // within its place.
 Crate crateOf(
@@ -51,9 +57,7 @@ Crate crateOf(
     starts.push_back(
         startAt(Vec3(kSpacing * (column - middle), kSpacing * (row - middle), 0.0112 + kSpacing * layer) + shift));
   }
-  Crate crate{builder.build(), {}};
-  crate.state = makeState(crate.model, starts, {});
-  return crate;
+  return crateOf(builder, starts);
 }
 
 double energyOf(const Crate& crate) {
@@ -118,27 +122,47 @@ TEST(Heap, OfFiftyBallsIsSweptWhereNewtonsMethodFails) {
   EXPECT_GT(swept, 100);
 }
 
+// Balls of 15 g in layers of nine, and 5 kg on them.
+Crate slabOn(int balls, double shift) {
+  constexpr double kHalf = 0.04, kPitch = 0.024;
+  WorldBuilder builder{WorldOptions{}};
+  std::vector<BodyStart> starts;
+  addCrate(kHalf, builder, starts);
+  for (int i = 0; i < balls; ++i) {
+    builder.addBody({"ball", contact::Sphere{0.009}, true, 0.015, {}});
+    const Vec3 moved(std::sin(7.0 * i + shift), std::sin(11.0 * i + shift), 0);
+    starts.push_back(startAt(kPitch * Vec3(i % 3 - 1, i / 3 % 3 - 1, 0.6 + i / 9) + 1e-3 * moved));
+  }
+  builder.addBody({"slab", contact::Box{Vec3(0.039, 0.039, 0.01)}, true, 5, {}});
+  starts.push_back(startAt(Vec3(0, 0, kPitch * (balls / 9 + 2))));
+  return crateOf(builder, starts);
+}
+
 // Sweeps don't carry 5 kg on balls of 15 g: one tick in ten was flagged, off by up to 56 mm/s.
 TEST(Heap, OfBallsUnderASlabIsSolved) {
-  constexpr double kHalf = 0.04, kPitch = 0.024;
   int flagged = 0;
   for (const double shift : {0.0, 3e-4, 6e-4}) {
-    WorldBuilder builder{WorldOptions{}};
-    std::vector<BodyStart> starts;
-    addCrate(kHalf, builder, starts);
-    for (int i = 0; i < 36; ++i) {
-      builder.addBody({"ball", contact::Sphere{0.009}, true, 0.015, {}});
-      const Vec3 moved(std::sin(7.0 * i + shift), std::sin(11.0 * i + shift), 0);
-      starts.push_back(startAt(kPitch * Vec3(i % 3 - 1, i / 3 % 3 - 1, 0.6 + i / 9) + 1e-3 * moved));
-    }
-    builder.addBody({"slab", contact::Box{Vec3(0.039, 0.039, 0.01)}, true, 5, {}});
-    starts.push_back(startAt(Vec3(0, 0, 6 * kPitch)));
-    Crate crate{builder.build(), {}};
-    crate.state = makeState(crate.model, starts, {});
+    Crate crate = slabOn(36, shift);
     WorldScratch scratch(crate.model);
     for (int tick = 0; tick < 1000; ++tick) flagged += step(crate.model, crate.state, scratch).status != kStepOk;
   }
   EXPECT_LT(flagged, 60);  // 2 %: those of its landing
+}
+
+// Where sweeps failed and factors didn't fit either, the last iterate passed for an answer.
+TEST(Heap, OfBallsUnderASlabIsFlaggedWhereItIsntSolved) {
+  int missed = 0;
+  for (const int balls : {72, 90}) {
+    Crate crate = slabOn(balls, 0);
+    WorldScratch scratch(crate.model);
+    for (int tick = 0; tick < 400; ++tick) {
+      const StepReport report = step(crate.model, crate.state, scratch);
+      if (!(report.solve.error > 2e-3)) continue;  // far beyond 3e-4 of what slips
+      ++missed;
+      EXPECT_NE(report.status, kStepOk) << balls << ' ' << tick << ' ' << report.solve.error;
+    }
+  }
+  EXPECT_GT(missed, 0);
 }
 
 // Balls wedged between balls and walls seem to ask for what no motion gives, by some um/s where they stick and slide in
@@ -195,13 +219,10 @@ Crate fallInto(double half, const contact::Shape& shape, int count, std::uint64_
     const double x = random.uniform(-0.5 * half, 0.5 * half), y = random.uniform(-0.5 * half, 0.5 * half);
     starts.push_back({{q, Vec3(x, y, 0.03 + 0.022 * i)}, Vec3::Zero(), Vec3::Zero()});
   }
-  Crate crate{builder.build(), {}};
-  crate.state = makeState(crate.model, starts, {});
-  return crate;
+  return crateOf(builder, starts);
 }
 
-// Sticks that spin at 3 m/s counted as hit, and hits of a hundred contacts had 0.1 ms: one tick in seven was flagged,
-// off by up to 20 mm/s.
+// Sticks that spin at 3 m/s counted as hit, and hits of a hundred contacts had 0.1 ms: one tick in seven was flagged.
 TEST(Heap, OfSticksIsSolvedWhileTheySpin) {
   int flagged = 0;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -231,9 +252,7 @@ Crate pyramidOf(int layers, double side, double h, double jitter = 0) {
       starts.push_back(startAt(place + Vec3{aside(), aside(), aside()}));
     }
   }
-  Crate crate{builder.build(), {}};
-  crate.state = makeState(crate.model, starts, {});
-  return crate;
+  return crateOf(builder, starts);
 }
 
 // Ticks until nothing moves any more, `most` if that isn't so by then.
@@ -289,8 +308,7 @@ TEST(Heap, OfLogsBetweenPostsRests) {
       starts.push_back({{tests::about(Vec3::UnitX(), 0.5 * tests::kPi), p}, Vec3::Zero(), Vec3::Zero()});
     }
   }
-  Crate crate{builder.build(), {}};
-  crate.state = makeState(crate.model, starts, {});
+  Crate crate = crateOf(builder, starts);
   EXPECT_LT(ticksToRest(crate, kMost), kMost);
 }
 
