@@ -100,7 +100,8 @@ class Search {
     const bool is_round = !problem_.round.empty();
     if (searchBy(is_round ? kProductsPerRoundContact * problem_.contactCount() : affordableProducts(problem_))) return;
     sweep();
-    if (is_round && result_.method == SolveMethod::kNotConverged && problem_.movers <= kMostRoundMovers) searchOn();
+    const bool has_failed = result_.method == SolveMethod::kNotConverged && scratch_.operations_left >= 0;
+    if (is_round && has_failed && problem_.movers <= kMostRoundMovers) searchOn();
   }
   // From where sweeps got no further: heavy bodies weigh on light balls.
   void searchOn() {
@@ -108,7 +109,7 @@ class Search {
     result_.method = SolveMethod::kNoContact;  // yet
     restart();
     best_ = {};
-    look();
+    look();  // at how fast it slips, too
     if (!searchBy(affordableProducts(problem_))) conclude();
   }
   // False if its factors don't fit.
@@ -128,10 +129,12 @@ class Search {
     return !isFew() && options_.accuracy > 0 && referenceSpeed(problem_) > kHitSpeed * options_.accuracy;
   }
   std::int64_t mostOperations(const MoverMatrix& matrix) const {
-    if (has_swept_ && !isPatient()) return kSweptFactorisations * matrix.costOfFactorisation() / scratch_.haste;
     if (isFew() && !isPatient())
       return kFewFactorisations[static_cast<int>(options_.effort)] * matrix.costOfFactorisation();
-    const std::int64_t most = times() * std::max(kFewestOperations, kMostFactorisations * matrix.costOfFactorisation());
+    const std::int64_t cost = matrix.costOfFactorisation();
+    const std::int64_t once =
+        has_swept_ ? kSweptFactorisations * cost : std::max(kFewestOperations, kMostFactorisations * cost);
+    const std::int64_t most = times() * once;
     return (isHit() ? std::min(most, scratch_.hit_operations / kHitSolves) : most) / scratch_.haste;
   }
 

@@ -19,7 +19,7 @@ constexpr int kEasySteps = 2;
 constexpr double kLeft = 0.1;         // of what is enough, and of the error before: a round's own error
 constexpr double kStillFading = 0.7;  // of a give or an error before
 constexpr double kFar = 3e-4;         // from where rounds rather fail [m/s]
-constexpr int kRoundPatience = 3, kMostFailures = 12;  // rounds whose give doesn't fade; chosen
+constexpr int kRoundPatience = 3, kMostFailures = 12;  // rounds whose give doesn't fade, rounds that fail; chosen
 constexpr int kPolishRounds = 3;                       // of what is quiet, to round-off
 constexpr double kPolishEpsilon = 1e-4;
 
